@@ -1,0 +1,64 @@
+# Two commands do everything on a fresh machine with Python 3.11+, make and git:
+#   make run    sets up and runs the main job
+#   make test   sets up and passes all tests
+# INSTALLER=pip does without uv; PYTHON=python3.12 chooses the interpreter.
+
+PYTHON ?= python3
+INSTALLER ?= uv
+VENV := .venv
+BIN := $(VENV)/bin
+PACKAGES := ncsim-core ncsim-wifi ncsim-saga ncsim-routing ncsim-viz
+STAMP := $(VENV)/.installed
+SETUP_INPUTS := pyproject.toml constraints.txt $(PACKAGES:%=%/pyproject.toml)
+EDITABLE := -e ./ncsim-core[testing] $(PACKAGES:ncsim-%=-e ./ncsim-%)
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test check format schemas constraints clean
+
+help:  ## Show what make can do
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+setup: $(STAMP)  ## Make .venv with the five packages (done by the others when needed)
+
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "ncsim needs Python 3.11 or newer; set PYTHON=..., e.g. make PYTHON=python3.12 run"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(STAMP): $(VENV)/.created $(SETUP_INPUTS)
+ifeq ($(INSTALLER),uv)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt uv
+	$(BIN)/uv pip install --quiet --python $(BIN)/python -c constraints.txt $(EDITABLE) --group dev
+else
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet -c constraints.txt $(EDITABLE) --group dev
+endif
+	touch $@
+
+run: $(STAMP)  ## Run the example in Solo and Full, then the paper's 108-run study
+	@$(BIN)/python examples/paper/main_job.py
+
+test: $(STAMP)  ## Run all tests
+	$(BIN)/python -m pytest
+
+check: $(STAMP)  ## Formatting, lint, types, import rules
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(STAMP)  ## Format and mend what can be mended
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+schemas: $(STAMP)  ## Write schemas/ anew from the five packages
+	NCSIM_PLUGINS=ncsim-core,ncsim-wifi,ncsim-saga,ncsim-routing,ncsim-viz $(BIN)/ncsim schema --write schemas
+
+constraints:  ## Pin every dependency anew
+	$(BIN)/uv export --quiet --all-packages --all-extras --group dev --no-hashes --no-header \
+	  --no-annotate --no-emit-workspace --output-file constraints.txt
+	rm -f uv.lock
+
+clean:  ## Remove everything that make has made
+	rm -rf $(VENV) out dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

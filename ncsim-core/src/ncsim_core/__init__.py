@@ -1,0 +1,1 @@
+"""Simulates DAG workflows on networked compute nodes: contracts, event engine, scenarios, CLI."""

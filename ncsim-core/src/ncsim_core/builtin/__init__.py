@@ -1,0 +1,1 @@
+"""The plainest implementation of each contract; registered exactly as third parties do."""

@@ -1,0 +1,133 @@
+"""How much does concurrent traffic slow a link?
+
+A model may be written in either of two forms; the base class derives the second from the
+first, and the conformance kit proves them equal.
+
+* Plain, the easiest: ``factors`` and ``reach``, pure functions of their arguments.
+* Incremental: ``open_session`` returns an object that the engine owns for one run and tells
+  which links were switched on and off.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from typing_extensions import override
+
+from ncsim_core.network import LinkIndex
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Competition(NamedTuple):
+    """What one active link is up against, for the trace and for explanations.
+
+    Args:
+        contenders: Other active links inside its conflict neighbourhood.
+        hidden_interferers: Active links outside it whose power reaches the receiver.
+        hidden_factor: The part of ``factor`` that hidden interferers alone explain, in [0, 1].
+    """
+
+    contenders: int = 0
+    hidden_interferers: int = 0
+    hidden_factor: float = 1.0
+
+
+class InterferenceModel(ABC):
+    """Gives each active link a factor in [0, 1] that multiplies its clean bandwidth."""
+
+    @abstractmethod
+    def factors(
+        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
+    ) -> "NDArray[np.float64]":
+        """Return the factor of each of ``links``, shape ``(len(links),)``.
+
+        ``active`` holds every link used by an unfinished transfer and contains ``links``. The
+        answer depends on the set only, not on its order; a link that is alone has factor 1.
+
+        Raises:
+            ModelScopeError: The model does not cover this set of links.
+        """
+
+    @abstractmethod
+    def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
+        """Return all links whose factor may move when ``changed`` switch on or off.
+
+        The engine asks again only for these, so leaving one out makes results wrong; naming
+        too many only costs time. The changed links themselves belong to the answer.
+        """
+
+    def competition(
+        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
+    ) -> Sequence[Competition]:
+        """Return what each of ``links`` is up against; by default, nothing is known."""
+        del active
+        return [Competition()] * len(links)
+
+    def open_session(self) -> "InterferenceSession":
+        """Return a fresh session for one run."""
+        return PlainSession(self)
+
+
+class InterferenceSession(ABC):
+    """The active links of one run and their factors, kept up to date step by step."""
+
+    @abstractmethod
+    def update(
+        self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
+    ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
+        """Switch links on and off; return the active links whose factor changed, and to what.
+
+        A link that was just switched on counts as having had factor 1. ``on`` and ``off`` share
+        no link, and hold no link that is already in that state.
+        """
+
+    @abstractmethod
+    def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
+        """Return what each of ``links`` is up against now."""
+
+
+class PlainSession(InterferenceSession):
+    """A session over a model in plain form.
+
+    Args:
+        model: The model to ask.
+        is_global: Ask for every active link after every change instead of those in
+            reach. This is the slow oracle that local refresh is tested against.
+    """
+
+    def __init__(self, model: InterferenceModel, *, is_global: bool = False) -> None:
+        self._model = model
+        self._is_global = is_global
+        self._factor_by_link: dict[LinkIndex, float] = {}
+
+    @override
+    def update(
+        self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
+    ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
+        for link in off:
+            del self._factor_by_link[link]
+        for link in on:
+            self._factor_by_link[link] = 1.0
+        links = self._links_to_ask([*on, *off])
+        if not links:
+            return (), ()
+        factors = self._model.factors(links, self._factor_by_link.keys()).tolist()
+        changed = [
+            (link, factor)
+            for link, factor in zip(links, factors, strict=True)
+            if factor != self._factor_by_link[link]
+        ]
+        self._factor_by_link.update(changed)
+        return [link for link, _ in changed], [factor for _, factor in changed]
+
+    @override
+    def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
+        return self._model.competition(links, self._factor_by_link.keys())
+
+    def _links_to_ask(self, switched: Sequence[LinkIndex]) -> list[LinkIndex]:
+        if self._is_global:
+            return sorted(self._factor_by_link)
+        return sorted(self._factor_by_link.keys() & set(self._model.reach(switched)))

@@ -1,0 +1,52 @@
+"""Time inside the engine, and every conversion to and from it.
+
+An ``Instant`` is a whole number of microseconds since the start of the run, so that equal
+means equal. Seconds appear only at the edges: scenario files, metrics, messages.
+"""
+
+import math
+from typing import TypeAlias
+
+Instant: TypeAlias = int
+
+MICROSECONDS_PER_SECOND = 1_000_000
+COMPLETION_TOLERANCE_us = 1e-5
+"""Slack before rounding a completion up, so that an exact end is not pushed one tick on."""
+
+MEGABITS_PER_MEGABYTE = 8.0
+
+
+def us_from_s(seconds: float) -> Instant:
+    """Return the microsecond nearest to ``seconds`` (ties to even).
+
+    >>> us_from_s(500 / 300)
+    1666667
+    """
+    return round(seconds * MICROSECONDS_PER_SECOND)
+
+
+def s_from_us(instant: Instant) -> float:
+    """Return an instant or a duration in seconds.
+
+    >>> s_from_us(14_872_057)
+    14.872057
+    """
+    return instant / MICROSECONDS_PER_SECOND
+
+
+def service_time_us(remaining_MB: float, rate_MBps: float) -> Instant:
+    """Return how long ``remaining_MB`` takes at ``rate_MBps``, rounded up to a microsecond.
+
+    Rounding up keeps unserved bytes from being discarded (paper, Section V-B).
+
+    Args:
+        remaining_MB: Bytes left to serve, 0 or more.
+        rate_MBps: Service rate, greater than 0.
+
+    >>> service_time_us(10.0, 3.0)
+    3333334
+    >>> service_time_us(1.0, 2.0)
+    500000
+    """
+    exact_us = remaining_MB / rate_MBps * MICROSECONDS_PER_SECOND
+    return max(0, math.ceil(exact_us - COMPLETION_TOLERANCE_us))

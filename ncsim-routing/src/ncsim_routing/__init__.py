@@ -1,0 +1,1 @@
+"""Widest-path, minimum-hop and shortest-path routing for ncsim."""

@@ -1,0 +1,1 @@
+"""SAGA's static DAG schedulers for ncsim."""

@@ -1,0 +1,1 @@
+"""Reports and a live viewer for ncsim runs."""

@@ -1,0 +1,1 @@
+"""IEEE 802.11 link rates, contention and hidden terminals for ncsim."""
