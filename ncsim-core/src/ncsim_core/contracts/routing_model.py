@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from ncsim_core.errors import PluginError
+from ncsim_core.errors import NcsimError, PluginError
 from ncsim_core.network import Network, NodeIndex, Route, route_fault
 
 
@@ -55,7 +55,12 @@ class RouteTable:
 
     def _checked_row(self, source: NodeIndex) -> tuple[Route | None, ...]:
         network = self._network
-        answers = self._model.routes_from(source, network)
+        try:
+            answers = self._model.routes_from(source, network)
+        except NcsimError:
+            raise
+        except Exception as error:
+            raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
         if len(answers) != len(network.nodes):
             raise PluginError(
                 f"{self._label}: routes_from() gave {len(answers)} routes "

@@ -64,7 +64,7 @@ def checked_placement(models: Models, dag: DAG, snapshot: NetworkSnapshot) -> li
         PlacementError: The plan lacks a task or names a node that does not exist.
     """
     who = models.identity("scheduler")
-    plan = asked(who, lambda: models.scheduler.schedule(dag, snapshot))
+    plan: object = asked(who, lambda: models.scheduler.schedule(dag, snapshot))
     if not isinstance(plan, PlacementPlan) or not isinstance(plan.nodes, Mapping):
         raise PlacementError(f"{who} answered with {plan!r} instead of a PlacementPlan")
     lacking = [task.id for task in dag.tasks if task.id not in plan.nodes]
@@ -142,7 +142,7 @@ class CheckedQueue:
         Raises:
             PluginError: It chose something that does not wait here.
         """
-        task = asked(self._who, self._queue.pop)
+        task: object = asked(self._who, self._queue.pop)
         if not isinstance(task, WaitingTask) or task.ticket not in self._waiting:
             raise PluginError(f"{self._who} popped {task!r}, which does not wait on this node")
         self._waiting.remove(task.ticket)
