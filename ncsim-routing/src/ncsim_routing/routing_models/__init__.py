@@ -1,0 +1,1 @@
+"""The routing models of this package, one per file."""
