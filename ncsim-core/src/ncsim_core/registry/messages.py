@@ -1,0 +1,58 @@
+"""What to say when a name does not lead to one component."""
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+from ncsim_core.registry.records import PluginRecord, RegisteredComponent
+from ncsim_core.registry.well_known import PROVIDER_BY_NAME, provider
+
+
+def ambiguous_name(kind: str, name: str, rivals: Sequence[RegisteredComponent]) -> str:
+    """Return the message for a bare name that several plug-ins offer."""
+    forms = ", ".join(each.qualified_name for each in rivals)
+    return f"{kind} {name!r} is offered by {len(rivals)} plug-ins; write one of: {forms}"
+
+
+def unknown_name(
+    kind: str, name: str, installed: Sequence[str], plugins: Iterable[PluginRecord]
+) -> str:
+    """Return the message for a name that nobody offers: what was meant, what to do."""
+    return "; ".join(
+        (
+            f"unknown {kind} {name!r}",
+            *_suggestion(kind, name, installed),
+            f"installed: {', '.join(sorted(installed)) or 'none'}",
+            *_plugins_left_out(plugins),
+        )
+    )
+
+
+def close_match(name: str, candidates: Iterable[str]) -> str | None:
+    """Return the candidate that was probably meant.
+
+    >>> close_match("hfet", ["heft", "cpop"])
+    'heft'
+    """
+    return next(iter(difflib.get_close_matches(name, sorted(candidates), n=1)), None)
+
+
+def _suggestion(kind: str, name: str, installed: Sequence[str]) -> list[str]:
+    """Return which name was meant and, where it is not installed, which package has it."""
+    known = PROVIDER_BY_NAME.get(kind, {})
+    meant = name if name in known else close_match(name, {*installed, *known})
+    if meant is None:
+        return []
+    advice = [] if meant == name else [f"did you mean {meant!r}"]
+    package = provider(kind, meant)
+    if meant not in installed and package is not None:
+        advice.append(f"{meant!r} comes with {package}: pip install {package}")
+    return advice
+
+
+def _plugins_left_out(plugins: Iterable[PluginRecord]) -> list[str]:
+    left_out = [
+        f"{each.distribution} {each.version} ({each.status}: {each.detail})"
+        for each in plugins
+        if each.status != "ok"
+    ]
+    return [f"plug-ins that did not load: {', '.join(left_out)}"] if left_out else []
