@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from ncsim_core.engine.events import TransferComplete
 from ncsim_core.engine.observer import RateCause, RateChange
-from ncsim_core.engine.setup import Setup
+from ncsim_core.engine.setup import Reach, Setup
 from ncsim_core.engine.state import State, Transfer
 from ncsim_core.network import LinkIndex
 from ncsim_core.units import MICROSECONDS_PER_SECOND, service_time_us
@@ -41,7 +41,7 @@ def refresh(transfer: Transfer, change: Change, state: State, setup: Setup) -> N
     """Apply one start or finish, then bring every affected transfer up to date."""
     switched = change(state, transfer)  # 1. occupy or release the route
     links = update_shares(switched, state, setup)  # 2. whose share moved?
-    flows = credited_flows(links, state)  # 3. credit work at the old rates (Eq. 13)
+    flows = credited_flows(links, state, setup)  # 3. credit work at the old rates (Eq. 13)
     assign_bottlenecks(flows, state)  # 4. the new rates (Eqs. 1 and 12)
     reschedule_completions(flows, state)  # 5. the new finish times
     if flows and state.rate_observers:
@@ -80,8 +80,10 @@ def update_shares(switched: Switched, state: State, setup: Setup) -> list[LinkIn
     """Bring factors and shares up to date; return the active links whose share moved.
 
     The interference model is asked only about what its ``reach`` of the switched links holds.
+    With global reach, all active links are looked at and returned.
     """
-    touched = dict.fromkeys(switched.route)
+    is_global = setup.reach is Reach.GLOBAL
+    touched = dict.fromkeys(range(len(state.links)) if is_global else switched.route)
     if switched.on or switched.off:
         links, factors = state.interference.update(switched.on, switched.off)
         for index, factor in zip(links, factors, strict=True):
@@ -94,26 +96,30 @@ def update_shares(switched: Switched, state: State, setup: Setup) -> list[LinkIn
         if not link.flows:
             continue
         share_MBps = bandwidth_MBps[index] * link.factor / len(link.flows)
-        if share_MBps != link.share_MBps:
+        if share_MBps != link.share_MBps or is_global:
             link.share_MBps = share_MBps
             moved.append(index)
     return moved
 
 
-def credited_flows(links: Collection[LinkIndex], state: State) -> list[Transfer]:
-    """Return the transfers on ``links`` whose rate moves, credited up to now at the old rate."""
+def credited_flows(links: Collection[LinkIndex], state: State, setup: Setup) -> list[Transfer]:
+    """Return the transfers on ``links`` whose rate moves, credited up to now at the old rate.
+
+    With global reach, all of them.
+    """
     affected: dict[int, Transfer] = {}
     for index in links:
         affected.update(state.links[index].flows)
-    flows = [
-        affected[number]
-        for number in sorted(affected)
-        if affected[number].bottleneck < 0
-        or bottleneck_of(affected[number], state)[0] != affected[number].rate_MBps
-    ]
+    flows = [affected[number] for number in sorted(affected)]
+    if setup.reach is Reach.LOCAL:
+        flows = [flow for flow in flows if _rate_moves(flow, state)]
     for flow in flows:
         credit(flow, state)
     return flows
+
+
+def _rate_moves(flow: Transfer, state: State) -> bool:
+    return flow.bottleneck < 0 or bottleneck_of(flow, state)[0] != flow.rate_MBps
 
 
 def credit(flow: Transfer, state: State) -> None:

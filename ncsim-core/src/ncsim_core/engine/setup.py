@@ -6,6 +6,7 @@ the file, so that the engine works on lists.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from typing import NamedTuple
 
 from ncsim_core.contracts.routing_model import RouteTable
@@ -68,6 +69,15 @@ class Limits:
     max_time_us: Instant | None = None
 
 
+class Reach(Enum):
+    """How far a refresh looks."""
+
+    LOCAL = "local"
+    """Only what the interference model names can move: what runs use."""
+    GLOBAL = "global"
+    """Every active link and transfer, always: the slow oracle that tests compare with."""
+
+
 @dataclass(frozen=True)
 class Setup:
     """What is fixed in a run.
@@ -82,6 +92,7 @@ class Setup:
         first_dependency: By injection, the number of its first dependency.
         routes: The route between any two nodes.
         limits: When to give up.
+        reach: How far a refresh looks.
     """
 
     network: Network
@@ -93,9 +104,12 @@ class Setup:
     first_dependency: tuple[int, ...]
     routes: RouteTable
     limits: Limits
+    reach: Reach = Reach.LOCAL
 
     @classmethod
-    def of(cls, network: Network, models: Models, limits: Limits) -> "Setup":
+    def of(
+        cls, network: Network, models: Models, limits: Limits, reach: Reach = Reach.LOCAL
+    ) -> "Setup":
         """Return the setup of a run on a network whose rates are decided.
 
         Raises:
@@ -126,6 +140,7 @@ class Setup:
             first_dependency,
             routes,
             limits,
+            reach,
         )
 
 

@@ -14,7 +14,7 @@ from ncsim_core.engine.events import (
 )
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.outcome import Outcome, RunStatus
-from ncsim_core.engine.setup import Limits, Setup
+from ncsim_core.engine.setup import Limits, Reach, Setup
 from ncsim_core.engine.state import State
 from ncsim_core.engine.tasks import (
     complete_task,
@@ -40,6 +40,7 @@ class Simulation:
         models: The six components.
         limits: When to give up.
         observers: Who watches, from the first event on.
+        reach: How far a refresh looks; ``Reach.GLOBAL`` is the slow oracle of the tests.
 
     Raises:
         PluginError: The DAG source's injections are out of order or ambiguous.
@@ -51,14 +52,30 @@ class Simulation:
         models: Models,
         limits: Limits | None = None,
         observers: Iterable[Observer] = (),
+        *,
+        reach: Reach = Reach.LOCAL,
     ) -> None:
-        self.setup = Setup.of(network, models, limits or Limits())
+        self.setup = Setup.of(network, models, limits or Limits(), reach)
         self.state = State.of(self.setup, observers)
         self.outcome: Outcome | None = None
         for number, injection in enumerate(self.setup.injections):
             self.state.queue.push(injection.at_us, DagInject.priority, DagInject(number))
         for observer in self.state.observers:
             observer.run_started(self.setup)
+
+    def observe(self, observer: Observer) -> None:
+        """Let somebody watch the rest of the run.
+
+        Raises:
+            ValueError: The first event has been handled already.
+        """
+        state = self.state
+        if state.events or self.outcome is not None:
+            raise ValueError("observers must be added before the first event is handled")
+        state.observers += (observer,)
+        if observer.wants_rates:
+            state.rate_observers += (observer,)
+        observer.run_started(self.setup)
 
     def run(self) -> Outcome:
         """Step until the run ends, and return how it did."""

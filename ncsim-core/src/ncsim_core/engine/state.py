@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from ncsim_core.contracts.interference_model import InterferenceSession, PlainSession
 from ncsim_core.engine.boundary import CheckedQueue, CheckedSession, asked
 from ncsim_core.engine.event_queue import EventQueue
+from ncsim_core.engine.setup import DependencyEntry, Reach, Setup, TaskEntry
 
 if TYPE_CHECKING:
-    from ncsim_core.contracts.interference_model import InterferenceSession
     from ncsim_core.engine.events import Event
     from ncsim_core.engine.observer import Observer
-    from ncsim_core.engine.setup import DependencyEntry, Setup, TaskEntry
     from ncsim_core.network import LinkIndex, NodeIndex, Route
     from ncsim_core.units import Instant
 
@@ -155,7 +155,7 @@ class State:
         models = setup.models
         who_queues = models.identity("queue_model")
         who_interferes = models.identity("interference_model")
-        session = asked(who_interferes, models.interference.open_session)
+        session = asked(who_interferes, lambda: _session(setup))
         watching = tuple(observers)
         return cls(
             tasks=[TaskRun(entry, entry.incoming_count) for entry in setup.tasks],
@@ -171,3 +171,9 @@ class State:
             rate_observers=tuple(each for each in watching if each.wants_rates),
             unfinished_tasks=len(setup.tasks),
         )
+
+
+def _session(setup: Setup) -> InterferenceSession:
+    if setup.reach is Reach.GLOBAL:
+        return PlainSession(setup.models.interference, is_global=True)
+    return setup.models.interference.open_session()
