@@ -1,0 +1,142 @@
+"""Files of a run under their final name only when they are whole; plain or compressed."""
+
+import contextlib
+import gzip
+import io
+import json
+import os
+import secrets
+from pathlib import Path
+from typing import BinaryIO, Final, TextIO
+
+from ncsim_core.trace.records import TraceError
+
+GZIP_LEVEL: Final = 6
+TRACE_NAMES: Final = ("trace.jsonl", "trace.jsonl.gz", "trace.jsonl.zst")
+
+
+def temporary_sibling(path: Path) -> Path:
+    """Return an unused hidden name beside ``path``, on the same file system."""
+    return path.with_name(f".{path.name}.partial-{os.getpid()}-{secrets.token_hex(4)}")
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Write a text file that appears under its name only when it is whole.
+
+    Raises:
+        TraceError: It cannot be written.
+    """
+    sink = TextSink(path)
+    try:
+        sink.write(text)
+        sink.finish()
+    finally:
+        sink.discard()
+
+
+def json_text(document: object) -> str:
+    """Return a JSON document for people: indented, keys in the order given, line at the end."""
+    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def trace_file(target: Path) -> Path:
+    """Return the trace that a path means: itself, or the one inside a run's folder.
+
+    Raises:
+        TraceError: There is none.
+    """
+    if not target.is_dir():
+        return target
+    for name in TRACE_NAMES:
+        if (target / name).is_file():
+            return target / name
+    raise TraceError(f"{target}: this folder holds no {' or '.join(TRACE_NAMES[:2])}")
+
+
+class TextSink:
+    """Where text goes: a stream of the caller's, or a file that is renamed when whole.
+
+    Args:
+        target: Path (compressed if it ends in ``.gz``) or open text stream.
+        is_live: Write under the final name from the start, and to disk at every write.
+
+    Raises:
+        TraceError: The file cannot be written.
+    """
+
+    def __init__(self, target: Path | str | TextIO, *, is_live: bool = False) -> None:
+        self._is_live = is_live
+        self._path: Path | None = None
+        self._failure = "this file is already closed"
+        if not isinstance(target, Path | str):
+            self._stream: TextIO | None = target
+            return
+        self._path = Path(target)
+        self._written_to = self._path if is_live else temporary_sibling(self._path)
+        try:
+            self._raw = self._written_to.open("wb")
+        except OSError as error:
+            raise self._fault(error) from error
+        self._stream = _text_stream(self._raw, is_compressed=self._path.suffix == ".gz")
+
+    def write(self, text: str) -> None:
+        """Write text."""
+        if self._stream is None:
+            raise TraceError(f"{self._path or 'trace'}: {self._failure}")
+        try:
+            self._stream.write(text)
+            if self._is_live:
+                self._stream.flush()
+        except OSError as error:
+            self.discard()
+            raise self._fault(error) from error
+
+    def finish(self) -> None:
+        """Close the file and give it its name; a stream of the caller's is only flushed."""
+        stream, self._stream = self._stream, None
+        if stream is None:
+            return
+        try:
+            if self._path is None:
+                stream.flush()
+                return
+            stream.close()
+            self._raw.close()
+            self._written_to.replace(self._path)
+        except OSError as error:
+            self._close_raw()
+            self._remove()
+            raise self._fault(error) from error
+
+    def discard(self) -> None:
+        """Remove what was written unless it is finished; a live file stays as it is."""
+        stream, self._stream = self._stream, None
+        if stream is None or self._path is None:
+            return
+        with contextlib.suppress(OSError):  # a full disk: what is buffered is not wanted any more
+            stream.close()
+        self._close_raw()
+        if not self._is_live:
+            self._remove()
+
+    def _close_raw(self) -> None:
+        with contextlib.suppress(OSError):
+            self._raw.close()
+
+    def _remove(self) -> None:
+        self._written_to.unlink(missing_ok=True)
+
+    def _fault(self, error: OSError) -> TraceError:
+        self._failure = f"cannot be written: {error.strerror or error}"
+        return TraceError(f"{self._path or 'trace'}: {self._failure}")
+
+
+def _text_stream(raw: BinaryIO, *, is_compressed: bool) -> TextIO:
+    """Return a text stream onto ``raw``; without name and time, equal text gives equal bytes.
+
+    A lone surrogate is written as its escape, which is what JSON wants to see inside a string.
+    """
+    if is_compressed:
+        packed = gzip.GzipFile("", "wb", GZIP_LEVEL, raw, mtime=0)
+        return io.TextIOWrapper(packed, "utf-8", "backslashreplace", newline="\n")
+    return io.TextIOWrapper(raw, "utf-8", "backslashreplace", newline="\n")

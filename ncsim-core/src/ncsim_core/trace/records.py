@@ -1,0 +1,316 @@
+"""What stands in a trace: the header and the ten kinds of record, field by field.
+
+``RECORDS`` is the only list of fields. The reader checks by it, ``trace_schema`` is made of it,
+and every header carries its texts under ``kinds``, so that a trace explains itself.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final, Literal, NamedTuple, TypeAlias
+
+from ncsim_core.errors import ScenarioError
+from ncsim_core.models import ComponentIdentity
+from ncsim_core.trace import shapes
+from ncsim_core.trace.shapes import Shape
+
+FORMAT: Final = "ncsim-trace"
+VERSION: Final = "1.0"
+"""Major and minor. A minor only adds kinds and fields; readers ignore what they do not know."""
+
+TIME_UNIT: Final = "us"
+
+TraceLevel: TypeAlias = Literal["full", "coarse"]
+"""``coarse`` leaves ``recalc`` records out."""
+
+
+class TraceError(ScenarioError):
+    """A trace is not what it should be; a trace is input like a scenario."""
+
+
+@dataclass(frozen=True)
+class TraceHeader:
+    """What a trace says about its scenario.
+
+    Args:
+        scenario: Name of the scenario.
+        scenario_sha256: Hash of the resolved scenario.
+        seed: Seed of the run.
+        sections: Resolved config sections that viewers need, such as ``rf``.
+        software: Name and version of what ran it; empty means this ncsim-core.
+    """
+
+    scenario: str = ""
+    scenario_sha256: str = ""
+    seed: int = 42
+    sections: Mapping[str, object] = field(default_factory=dict)
+    software: str = ""
+
+
+class NodeRow(NamedTuple):
+    """A node as the header lists it; capacity in compute units per second."""
+
+    id: str
+    capacity: float
+    x_m: float | None = None
+    y_m: float | None = None
+
+
+class LinkRow(NamedTuple):
+    """A link as the header lists it; ``source`` and ``target`` are node indices."""
+
+    id: str
+    source: int
+    target: int
+    bandwidth_MBps: float
+    latency_s: float = 0.0
+    medium: str = "wireless"
+
+
+@dataclass(frozen=True)
+class TracePreamble:
+    """The first line of a trace, read.
+
+    Args:
+        header: What it says about the scenario.
+        version: Version of the format.
+        level: ``full`` or ``coarse``.
+        plugins: By kind, who decided.
+        nodes: Table that node numbers point into.
+        links: Table that link numbers point into.
+    """
+
+    header: TraceHeader
+    version: str
+    level: str
+    plugins: Mapping[str, ComponentIdentity]
+    nodes: tuple[NodeRow, ...]
+    links: tuple[LinkRow, ...]
+
+
+class Injected(NamedTuple):
+    """A DAG has entered; the only place with the names of its tasks."""
+
+    line: int
+    at_us: int
+    dag: int
+    dag_id: str
+    first_task: int
+    first_edge: int
+    tasks: list[tuple[str, float]]
+    edges: list[tuple[int, int, float]]
+
+
+class Placed(NamedTuple):
+    """The node of each task of a DAG, in file order."""
+
+    line: int
+    at_us: int
+    dag: int
+    nodes: list[int]
+
+
+class Ready(NamedTuple):
+    """All inputs of a task have arrived."""
+
+    line: int
+    at_us: int
+    task: int
+    node: int
+
+
+class Started(NamedTuple):
+    """A task has begun to run."""
+
+    line: int
+    at_us: int
+    task: int
+    node: int
+
+
+class Ended(NamedTuple):
+    """A task has ended."""
+
+    line: int
+    at_us: int
+    task: int
+    node: int
+
+
+class TransferStarted(NamedTuple):
+    """A transfer's latency is paid and byte service begins."""
+
+    line: int
+    at_us: int
+    transfer: int
+    route: list[int]
+    size_MB: float
+
+
+class RatesAssigned(NamedTuple):
+    """A start or end of a transfer has moved rates; the lists run in parallel."""
+
+    line: int
+    at_us: int
+    cause: tuple[Literal["s", "e"], int]
+    transfers: list[int]
+    rates_MBps: list[float]
+    bottlenecks: list[int]
+    contenders: list[int]
+    hidden_interferers: list[int]
+    hidden_factors: list[float]
+    flows: list[int]
+
+
+class TransferEnded(NamedTuple):
+    """The last byte of a transfer has been served."""
+
+    line: int
+    at_us: int
+    transfer: int
+
+
+class Note(NamedTuple):
+    """Something a plug-in wanted on record."""
+
+    line: int
+    at_us: int
+    namespace: str
+    data: object
+
+
+class Done(NamedTuple):
+    """How the run ended; always the last record."""
+
+    line: int
+    at_us: int
+    status: str
+    makespan_us: int | None
+    events: int
+    detail: str
+    counts: dict[str, int]
+
+
+TraceRecord: TypeAlias = (
+    Injected
+    | Placed
+    | Ready
+    | Started
+    | Ended
+    | TransferStarted
+    | RatesAssigned
+    | TransferEnded
+    | Note
+    | Done
+)
+
+
+class Field(NamedTuple):
+    """One field of a record: its key, shape and meaning."""
+
+    key: str
+    shape: Shape
+    meaning: str
+
+
+class RecordSpec(NamedTuple):
+    """One kind of record; ``fields`` in the order of the class after ``line`` and ``at_us``."""
+
+    type: type[TraceRecord]
+    fields: tuple[Field, ...]
+
+
+_TASK: Final = (Field("i", shapes.COUNT, "task"), Field("n", shapes.COUNT, "node"))
+_TRANSFER: Final = Field("x", shapes.COUNT, "transfer: the number of its edge")
+
+RECORDS: Final[Mapping[str, RecordSpec]] = {
+    "inject": RecordSpec(
+        Injected,
+        (
+            Field("d", shapes.COUNT, "DAG number, counted in order of injection"),
+            Field("dag", shapes.TEXT, "DAG id"),
+            Field("i0", shapes.COUNT, "number of its first task; the others follow"),
+            Field("x0", shapes.COUNT, "number of its first edge; the others follow"),
+            Field("tasks", shapes.TASK_ROWS, "[id, cost in compute units] of each task"),
+            Field("edges", shapes.EDGE_ROWS, "[producing task, waiting task, size in MB]"),
+        ),
+    ),
+    "place": RecordSpec(
+        Placed,
+        (
+            Field("d", shapes.COUNT, "DAG number"),
+            Field("n", shapes.COUNTS, "node of each of its tasks"),
+        ),
+    ),
+    "ready": RecordSpec(Ready, _TASK),
+    "start": RecordSpec(Started, _TASK),
+    "end": RecordSpec(Ended, _TASK),
+    "xstart": RecordSpec(
+        TransferStarted,
+        (
+            _TRANSFER,
+            Field("route", shapes.COUNTS, "links in order from source to target"),
+            Field("size", shapes.QUANTITY, "payload in MB"),
+        ),
+    ),
+    "recalc": RecordSpec(
+        RatesAssigned,
+        (
+            Field("by", shapes.CAUSE, 'cause: ["s" start | "e" end, transfer]'),
+            Field("x", shapes.COUNTS, "transfers whose rate moved"),
+            Field("r", shapes.QUANTITIES, "new rate of each in MB/s, full precision; 0 = paused"),
+            Field("l", shapes.COUNTS, "bottleneck link of each"),
+            Field("nc", shapes.COUNTS, "contenders of that link"),
+            Field("nh", shapes.COUNTS, "hidden interferers of that link"),
+            Field("fh", shapes.QUANTITIES, "factor that hidden interferers alone explain"),
+            Field("f", shapes.COUNTS, "transfers that share that link, this one included"),
+        ),
+    ),
+    "xend": RecordSpec(TransferEnded, (_TRANSFER,)),
+    "note": RecordSpec(
+        Note,
+        (
+            Field("ns", shapes.TEXT, "who wrote it, such as the name of a plug-in"),
+            Field("data", shapes.ANYTHING, "what was written"),
+        ),
+    ),
+    "done": RecordSpec(
+        Done,
+        (
+            Field("status", shapes.TEXT, "why the run stopped"),
+            Field("makespan_us", shapes.COUNT_OR_NULL, "when the last task ended; null if not all"),
+            Field("events", shapes.COUNT, "events handled"),
+            Field("detail", shapes.TEXT, "what to know about an end other than completed"),
+            Field("counts", shapes.COUNT_BY_TEXT, "records of each kind before this one"),
+        ),
+    ),
+}
+
+HEADER_FIELDS: Final = (
+    Field("format", shapes.TEXT, "always ncsim-trace"),
+    Field("version", shapes.TEXT, "major.minor of the format"),
+    Field("time_unit", shapes.TEXT, "unit of every t: us, microseconds"),
+    Field("level", shapes.TEXT, "full, or coarse (without recalc records)"),
+    Field("software", shapes.TEXT, "what ran the scenario"),
+    Field("scenario", shapes.TEXT, "name of the scenario"),
+    Field("scenario_sha256", shapes.TEXT, "hash of the resolved scenario"),
+    Field(
+        "seed",
+        shapes.Shape("a whole number", lambda v: type(v) is int, {"type": "integer"}),
+        "seed of the run",
+    ),
+    Field("plugins", shapes.OBJECT, "by kind: name, distribution, version, factory, options"),
+    Field("sections", shapes.OBJECT, "resolved config sections such as rf"),
+    Field("nodes", shapes.NODE_ROWS, "[id, capacity in units/s, x_m, y_m]"),
+    Field(
+        "links", shapes.LINK_ROWS, "[id, source node, target node, clean MB/s, latency s, medium]"
+    ),
+    Field("kinds", shapes.OBJECT, "kinds of record: what each field means"),
+)
+
+
+def kinds_documented() -> dict[str, dict[str, str]]:
+    """Return for each kind what its fields mean, as the header carries it."""
+    return {
+        kind: {"t": "time in microseconds"} | {each.key: each.meaning for each in spec.fields}
+        for kind, spec in RECORDS.items()
+    }

@@ -1,0 +1,264 @@
+"""Writes the trace of a run while it goes on, in constant memory.
+
+The frequent kinds are formatted by hand: same text as ``json.dumps`` with compact separators,
+at a fraction of the time.
+"""
+
+import json
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import Final, Self, TextIO
+
+from typing_extensions import override
+
+from ncsim_core.engine.observer import Observer, RateCause, RateChange
+from ncsim_core.engine.outcome import Outcome
+from ncsim_core.engine.setup import Setup
+from ncsim_core.models import ComponentIdentity
+from ncsim_core.network import LinkIndex, Network, NodeIndex
+from ncsim_core.trace.files import TextSink
+from ncsim_core.trace.records import (
+    FORMAT,
+    RECORDS,
+    TIME_UNIT,
+    VERSION,
+    TraceHeader,
+    TraceLevel,
+    kinds_documented,
+)
+from ncsim_core.units import Instant
+
+BUFFER_CHARACTERS: Final = 64 * 1024
+LIVE_FLUSH_s: Final = 0.25
+
+to_json: Final[Callable[[object], str]] = json.JSONEncoder(
+    separators=(",", ":"), ensure_ascii=False, allow_nan=False
+).encode
+_float_text: Final = float.__repr__  # what json writes, also for numpy's subclass of float
+
+
+class TraceWriter(Observer):
+    """Observer that writes a trace.
+
+    Give it a path and it writes to a temporary name beside it, compressed if the name ends in
+    ``.gz``, and renames when the run has ended; leaving a ``with`` block before that leaves no
+    file. Give it an open text stream and it writes there and closes nothing.
+
+    Args:
+        target: Path or text stream.
+        header: What the trace says about its scenario.
+        level: ``full``, or ``coarse`` to leave ``recalc`` records out.
+        is_live: Write under the final name at once and flush every quarter of a second, for
+            those who follow a run.
+    """
+
+    def __init__(
+        self,
+        target: Path | str | TextIO,
+        header: TraceHeader | None = None,
+        level: TraceLevel = "full",
+        *,
+        is_live: bool = False,
+    ) -> None:
+        self.wants_rates = level == "full"
+        self._header = header or TraceHeader()
+        self._level = level
+        self._sink = TextSink(target, is_live=is_live)
+        self._is_live = is_live
+        self._flushed_at_s = time.monotonic()
+        self._lines: list[str] = []
+        self._characters = 0
+        self._counts = dict.fromkeys(RECORDS, 0)
+        self._setup: Setup | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        error_type: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._sink.discard()
+
+    @override
+    def run_started(self, setup: Setup) -> None:
+        self._setup = setup
+        self._put(to_json(header_document(self._header, self._level, setup)) + "\n")
+
+    @override
+    def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
+        assert self._setup is not None  # the engine starts runs before it injects
+        self._put_record("inject", at_us, injection_fields(self._setup, dag))
+        self._put_record("place", at_us, {"d": dag, "n": [int(node) for node in nodes]})
+
+    @override
+    def task_ready(self, at_us: Instant, task: int, node: NodeIndex) -> None:
+        self._counts["ready"] += 1
+        self._put(f'{{"t":{at_us},"k":"ready","i":{task},"n":{node}}}\n')
+
+    @override
+    def task_started(self, at_us: Instant, task: int, node: NodeIndex) -> None:
+        self._counts["start"] += 1
+        self._put(f'{{"t":{at_us},"k":"start","i":{task},"n":{node}}}\n')
+
+    @override
+    def task_ended(self, at_us: Instant, task: int, node: NodeIndex) -> None:
+        self._counts["end"] += 1
+        self._put(f'{{"t":{at_us},"k":"end","i":{task},"n":{node}}}\n')
+
+    @override
+    def transfer_started(
+        self, at_us: Instant, transfer: int, route: Sequence[LinkIndex], size_MB: float
+    ) -> None:
+        self._counts["xstart"] += 1
+        size = _float_text(float(size_MB))
+        self._put(
+            f'{{"t":{at_us},"k":"xstart","x":{transfer},"route":[{_joined(route)}],"size":{size}}}\n'
+        )
+
+    @override
+    def rates_assigned(
+        self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
+    ) -> None:
+        if self._level != "full" or not changes:
+            return
+        transfers, rates, bottlenecks, flows, competition = zip(*changes, strict=True)
+        contenders, hidden, hidden_factors = zip(*competition, strict=True)
+        by = "s" if cause.change == "start" else "e"
+        self._counts["recalc"] += 1
+        self._put(
+            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{_joined(transfers)}],'
+            f'"r":[{_floats_joined(rates)}],"l":[{_joined(bottlenecks)}],'
+            f'"nc":[{_joined(contenders)}],"nh":[{_joined(hidden)}],'
+            f'"fh":[{_floats_joined(hidden_factors)}],"f":[{_joined(flows)}]}}\n'
+        )
+
+    @override
+    def transfer_ended(self, at_us: Instant, transfer: int) -> None:
+        self._counts["xend"] += 1
+        self._put(f'{{"t":{at_us},"k":"xend","x":{transfer}}}\n')
+
+    def note(self, at_us: Instant, namespace: str, data: object) -> None:
+        """Put something of a plug-in on record, under the plug-in's name."""
+        self._put_record("note", at_us, {"ns": namespace, "data": data})
+
+    @override
+    def run_ended(self, outcome: Outcome) -> None:
+        counts = {kind: count for kind, count in self._counts.items() if count}
+        fields = {
+            "status": str(outcome.status),
+            "makespan_us": outcome.makespan_us,
+            "events": outcome.events,
+            "detail": outcome.detail,
+            "counts": counts,
+        }
+        self._put_record("done", outcome.ended_us, fields)
+        self._flush()
+        self._sink.finish()
+
+    def _put_record(self, kind: str, at_us: Instant, fields: Mapping[str, object]) -> None:
+        self._counts[kind] += 1
+        self._put(to_json({"t": at_us, "k": kind, **fields}) + "\n")
+
+    def _put(self, line: str) -> None:
+        self._lines.append(line)
+        self._characters += len(line)
+        if self._characters >= BUFFER_CHARACTERS or (self._is_live and self._is_flush_due()):
+            self._flush()
+
+    def _is_flush_due(self) -> bool:
+        return time.monotonic() - self._flushed_at_s >= LIVE_FLUSH_s
+
+    def _flush(self) -> None:
+        self._sink.write("".join(self._lines))
+        self._lines.clear()
+        self._characters = 0
+        self._flushed_at_s = time.monotonic()
+
+
+def _joined(numbers: Iterable[int]) -> str:
+    return ",".join(map(str, numbers))
+
+
+def _floats_joined(numbers: Iterable[float]) -> str:
+    return ",".join([_float_text(float(number)) for number in numbers])
+
+
+def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dict[str, object]:
+    """Return the first line of a trace as an object."""
+    identities = setup.models.identities
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "time_unit": TIME_UNIT,
+        "level": level,
+        "software": header.software or f"ncsim-core {version('ncsim-core')}",
+        "scenario": header.scenario,
+        "scenario_sha256": header.scenario_sha256,
+        "seed": header.seed,
+        "plugins": {kind: _plugin_entry(identities[kind]) for kind in sorted(identities)},
+        "sections": _key_sorted(header.sections),
+        "nodes": _node_rows(setup.network),
+        "links": _link_rows(setup.network),
+        "kinds": kinds_documented(),
+    }
+
+
+def _plugin_entry(identity: ComponentIdentity) -> dict[str, object]:
+    return {
+        "name": identity.name,
+        "distribution": identity.distribution,
+        "version": identity.version,
+        "factory": identity.factory,
+        "options": _key_sorted(identity.options),
+    }
+
+
+def _key_sorted(mapping: Mapping[str, object]) -> object:
+    return json.loads(json.dumps(dict(mapping), sort_keys=True, allow_nan=False))
+
+
+def _node_rows(network: Network) -> list[list[object]]:
+    return [
+        [
+            node.id,
+            float(node.compute_capacity),
+            None if node.position is None else float(node.position.x_m),
+            None if node.position is None else float(node.position.y_m),
+        ]
+        for node in network.nodes
+    ]
+
+
+def _link_rows(network: Network) -> list[list[object]]:
+    return [
+        [
+            link.id,
+            network.sources[index],
+            network.targets[index],
+            network.bandwidth_MBps[index],
+            network.latency_s[index],
+            link.medium,
+        ]
+        for index, link in enumerate(network.links)
+    ]
+
+
+def injection_fields(setup: Setup, dag: int) -> dict[str, object]:
+    """Return the fields of an ``inject`` record: the names, once."""
+    injected = setup.injections[dag].dag
+    first_task, first_edge = setup.first_task[dag], setup.first_dependency[dag]
+    edges = setup.dependencies[first_edge : first_edge + len(injected.dependencies)]
+    return {
+        "d": dag,
+        "dag": injected.id,
+        "i0": first_task,
+        "x0": first_edge,
+        "tasks": [[task.id, float(task.compute_cost)] for task in injected.tasks],
+        "edges": [[edge.source, edge.target, float(edge.size_MB)] for edge in edges],
+    }
