@@ -12,7 +12,7 @@ from typing import BinaryIO, Final, TextIO
 from ncsim_core.trace.records import TraceError
 
 GZIP_LEVEL: Final = 6
-TRACE_NAMES: Final = ("trace.jsonl", "trace.jsonl.gz", "trace.jsonl.zst")
+TRACE_NAMES: Final = ("trace.jsonl", "trace.jsonl.gz")
 
 
 def temporary_sibling(path: Path) -> Path:
@@ -50,7 +50,7 @@ def trace_file(target: Path) -> Path:
     for name in TRACE_NAMES:
         if (target / name).is_file():
             return target / name
-    raise TraceError(f"{target}: this folder holds no {' or '.join(TRACE_NAMES[:2])}")
+    raise TraceError(f"{target}: this folder holds no {' or '.join(TRACE_NAMES)}")
 
 
 class TextSink:

@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+MAX_SHOWN_CHARACTERS: Final = 60
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -19,6 +21,12 @@ class Shape:
     says: str
     accepts: Callable[[object], bool]
     schema: Mapping[str, object]
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: on one line, cut when long."""
+    text = value.decode("utf-8", "replace").strip() if isinstance(value, bytes) else repr(value)
+    return text if len(text) <= MAX_SHOWN_CHARACTERS else text[:MAX_SHOWN_CHARACTERS] + "..."
 
 
 def is_count(value: object) -> bool:

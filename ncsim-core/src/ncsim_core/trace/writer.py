@@ -18,7 +18,7 @@ from ncsim_core.engine.observer import Observer, RateCause, RateChange
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.models import ComponentIdentity
-from ncsim_core.network import LinkIndex, Network, NodeIndex
+from ncsim_core.network import LinkIndex, NodeIndex
 from ncsim_core.trace.files import TextSink
 from ncsim_core.trace.records import (
     FORMAT,
@@ -29,6 +29,7 @@ from ncsim_core.trace.records import (
     TraceLevel,
     kinds_documented,
 )
+from ncsim_core.trace.tables import injected_record, link_rows, node_rows
 from ncsim_core.units import Instant
 
 BUFFER_CHARACTERS: Final = 64 * 1024
@@ -93,7 +94,9 @@ class TraceWriter(Observer):
     @override
     def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
         assert self._setup is not None  # the engine starts runs before it injects
-        self._put_record("inject", at_us, injection_fields(self._setup, dag))
+        injected = injected_record(self._setup, at_us, dag)
+        keys = (field.key for field in RECORDS["inject"].fields)
+        self._put_record("inject", at_us, dict(zip(keys, injected[2:], strict=True)))
         self._put_record("place", at_us, {"d": dag, "n": [int(node) for node in nodes]})
 
     @override
@@ -203,8 +206,8 @@ def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dic
         "seed": header.seed,
         "plugins": {kind: _plugin_entry(identities[kind]) for kind in sorted(identities)},
         "sections": _key_sorted(header.sections),
-        "nodes": _node_rows(setup.network),
-        "links": _link_rows(setup.network),
+        "nodes": node_rows(setup.network),
+        "links": link_rows(setup.network),
         "kinds": kinds_documented(),
     }
 
@@ -221,44 +224,3 @@ def _plugin_entry(identity: ComponentIdentity) -> dict[str, object]:
 
 def _key_sorted(mapping: Mapping[str, object]) -> object:
     return json.loads(json.dumps(dict(mapping), sort_keys=True, allow_nan=False))
-
-
-def _node_rows(network: Network) -> list[list[object]]:
-    return [
-        [
-            node.id,
-            float(node.compute_capacity),
-            None if node.position is None else float(node.position.x_m),
-            None if node.position is None else float(node.position.y_m),
-        ]
-        for node in network.nodes
-    ]
-
-
-def _link_rows(network: Network) -> list[list[object]]:
-    return [
-        [
-            link.id,
-            network.sources[index],
-            network.targets[index],
-            network.bandwidth_MBps[index],
-            network.latency_s[index],
-            link.medium,
-        ]
-        for index, link in enumerate(network.links)
-    ]
-
-
-def injection_fields(setup: Setup, dag: int) -> dict[str, object]:
-    """Return the fields of an ``inject`` record: the names, once."""
-    injected = setup.injections[dag].dag
-    first_task, first_edge = setup.first_task[dag], setup.first_dependency[dag]
-    edges = setup.dependencies[first_edge : first_edge + len(injected.dependencies)]
-    return {
-        "d": dag,
-        "dag": injected.id,
-        "i0": first_task,
-        "x0": first_edge,
-        "tasks": [[task.id, float(task.compute_cost)] for task in injected.tasks],
-        "edges": [[edge.source, edge.target, float(edge.size_MB)] for edge in edges],
-    }

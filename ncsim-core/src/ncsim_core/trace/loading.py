@@ -1,0 +1,119 @@
+"""Reads a trace into tables."""
+
+from collections.abc import Iterator, Sized
+from pathlib import Path
+
+from ncsim_core.trace.building import RunBuilder
+from ncsim_core.trace.reader import read_trace
+from ncsim_core.trace.records import (
+    Done,
+    Ended,
+    Injected,
+    Note,
+    Placed,
+    RatesAssigned,
+    Ready,
+    Started,
+    TraceRecord,
+    TransferEnded,
+    TransferStarted,
+)
+from ncsim_core.trace.run_trace import RateStep, RunEnd, RunTrace
+
+
+def load_run(path: Path | str) -> RunTrace:
+    """Read a trace, or the trace in a run's folder, into tables.
+
+    Raises:
+        TraceError: It is no trace, or names a node, link, task or transfer that it has not
+            introduced.
+    """
+    with read_trace(path) as reader:
+        builder = RunBuilder(reader.preamble)
+        for record in reader:
+            try:
+                enter(record, builder)
+            except ValueError as error:
+                raise reader.fault(str(error)) from error
+        return builder.build()
+
+
+def enter(record: TraceRecord, builder: RunBuilder) -> None:
+    """Enter a record into tables in the making.
+
+    Raises:
+        ValueError: It names something that was not introduced.
+    """
+    builder.now_us = record.at_us
+    match record:
+        case Injected():
+            builder.inject(record)
+        case Placed(_, _, dag, nodes):
+            _expect_known("DAG", [dag], builder.dags)
+            _expect_known("node", nodes, builder.preamble.nodes)
+            builder.place(dag, nodes)
+        case Ready() | Started() | Ended():
+            _enter_task(record, builder)
+        case TransferStarted() | TransferEnded() | RatesAssigned():
+            _enter_transfer(record, builder)
+        case Done(_, at_us, status, makespan_us, events, detail):
+            builder.end = RunEnd(status, at_us, makespan_us, events, detail)
+        case Note():
+            pass
+
+
+def _enter_task(record: Ready | Started | Ended, builder: RunBuilder) -> None:
+    _expect_known("task", [record.task], builder.names)
+    match record:
+        case Ready():
+            builder.ready_us[record.task] = record.at_us
+        case Started():
+            builder.started_us[record.task] = record.at_us
+        case Ended():
+            builder.ended_us[record.task] = record.at_us
+
+
+def _enter_transfer(
+    record: TransferStarted | TransferEnded | RatesAssigned, builder: RunBuilder
+) -> None:
+    match record:
+        case TransferStarted(_, at_us, transfer, route):
+            _expect_known("transfer", [transfer], builder.edges)
+            _expect_known("link", route, builder.preamble.links)
+            builder.route[transfer] = tuple(route)
+            builder.transfer_started_us[transfer] = at_us
+        case TransferEnded(_, at_us, transfer):
+            _expect_known("transfer", [transfer], builder.edges)
+            builder.transfer_ended_us[transfer] = at_us
+        case RatesAssigned():
+            _expect_known("transfer", [record.cause[1], *record.transfers], builder.edges)
+            _expect_known("link", record.bottlenecks, builder.preamble.links)
+            for transfer, step in rate_steps(record):
+                builder.add_step(transfer, step)
+
+
+def rate_steps(record: RatesAssigned) -> Iterator[tuple[int, RateStep]]:
+    """Yield each transfer of a ``recalc`` record with its new rate."""
+    change, cause = record.cause
+    for transfer, rate_MBps, link, contenders, hidden, factor, flows in zip(
+        record.transfers,
+        record.rates_MBps,
+        record.bottlenecks,
+        record.contenders,
+        record.hidden_interferers,
+        record.hidden_factors,
+        record.flows,
+        strict=True,
+    ):
+        yield (
+            transfer,
+            RateStep(
+                record.at_us, rate_MBps, link, contenders, hidden, factor, flows, change, cause
+            ),
+        )
+
+
+def _expect_known(what: str, numbers: list[int], table: Sized) -> None:
+    for number in numbers:
+        if number >= len(table):
+            raise ValueError(f"{what} {number} has not been introduced; there are {len(table)}")
