@@ -119,7 +119,7 @@ def credited_flows(links: Collection[LinkIndex], state: State, setup: Setup) -> 
 
 
 def _rate_moves(flow: Transfer, state: State) -> bool:
-    return flow.bottleneck < 0 or bottleneck_of(flow, state)[0] != flow.rate_MBps
+    return bottleneck_of(flow, state) != (flow.rate_MBps, flow.bottleneck)
 
 
 def credit(flow: Transfer, state: State) -> None:

@@ -1,0 +1,1 @@
+"""Networks and DAGs made by rule: the paper's study inputs, and common shapes."""

@@ -1,0 +1,180 @@
+"""Local refresh equals global refresh, and bytes are neither lost nor invented."""
+
+import math
+from itertools import pairwise
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ncsim_core.engine.outcome import RunStatus
+from ncsim_core.engine.setup import Reach
+from ncsim_core.engine.simulation import Simulation
+from ncsim_core.network import Link, LinkRates, Network, Node
+from ncsim_core.testing.toys import ToyInterference, models
+from ncsim_core.workflow import DAG, Dependency, Injection, Task
+
+SIZES_MB = st.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0, 10.0]) | st.floats(0.001, 20.0)
+
+
+@st.composite
+def networks(draw):
+    count = draw(st.integers(2, 6))
+    nodes = tuple(Node(f"n{k}", draw(st.sampled_from([50.0, 100.0, 300.0]))) for k in range(count))
+    pairs = [(a, b) for a in range(count) for b in range(count) if a != b]
+    chosen = draw(st.lists(st.sampled_from(pairs), min_size=1, max_size=12, unique=True))
+    ring = [(k, (k + 1) % count) for k in range(count)]
+    ends = list(dict.fromkeys([*ring, *chosen]))
+    links = tuple(Link(f"l{k}", f"n{a}", f"n{b}") for k, (a, b) in enumerate(ends))
+    bandwidths = draw(
+        st.lists(st.sampled_from([0.5, 1.0, 2.0, 3.0, 7.7]), min_size=len(ends), max_size=len(ends))
+    )
+    latencies = draw(
+        st.lists(st.sampled_from([0.0, 0.0, 0.1]), min_size=len(ends), max_size=len(ends))
+    )
+    return Network(nodes, links, LinkRates.of(bandwidths, latencies))
+
+
+@st.composite
+def dags(draw, dag_id, node_count):
+    count = draw(st.integers(1, 9))
+    tasks = tuple(
+        Task(
+            f"T{k}",
+            draw(st.sampled_from([0.0, 50.0, 100.0, 170.0])),
+            f"n{draw(st.integers(0, node_count - 1))}",
+        )
+        for k in range(count)
+    )
+    pairs = [(a, b) for b in range(count) for a in range(b)]
+    edges = draw(st.lists(st.sampled_from(pairs), max_size=14, unique=True)) if pairs else []
+    return DAG(dag_id, tasks, tuple(Dependency(f"T{a}", f"T{b}", draw(SIZES_MB)) for a, b in edges))
+
+
+@st.composite
+def interferences(draw, link_count):
+    indices = st.integers(0, link_count - 1)
+    neighbours = draw(st.dictionaries(indices, st.lists(indices, max_size=6), max_size=link_count))
+    return ToyInterference(neighbours, stop_at=draw(st.sampled_from([1, 2, 3, 99])))
+
+
+@st.composite
+def instances(draw):
+    network = draw(networks())
+    times_us = sorted([0, *draw(st.lists(st.sampled_from([0, 500_000, 1_000_003]), max_size=2))])
+    injections = [
+        Injection(at_us, draw(dags(f"d{k}", len(network.nodes))))
+        for k, at_us in enumerate(times_us)
+    ]
+    return network, injections, draw(interferences(len(network.links)))
+
+
+def simulation_of(instance, reach):
+    network, injections, interference = instance
+    return Simulation(network, models(network, injections, interference=interference), reach=reach)
+
+
+def picture(simulation):
+    """Return everything that both kinds of refresh must agree on, brought up to this instant."""
+    state = simulation.state
+    transfers = {}
+    served_MB = [link.served_MB for link in state.links]
+    for number, transfer in sorted(state.transfers.items()):
+        due_MB = transfer.rate_MBps * (state.now_us - transfer.credited_us) / 1e6
+        due_MB = min(due_MB, transfer.remaining_MB)
+        for link in transfer.route:
+            served_MB[link] += due_MB
+        transfers[number] = (transfer.rate_MBps, transfer.remaining_MB - due_MB)
+    times = [(task.ready_us, task.started_us, task.ended_us) for task in state.tasks]
+    return state.now_us, times, transfers, served_MB
+
+
+def close(one, other):
+    return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-9)
+
+
+def assert_same(local, globally):
+    now_us, times, transfers, served_MB = picture(local)
+    other_now_us, other_times, other_transfers, other_served_MB = picture(globally)
+    assert now_us == other_now_us
+    assert times == other_times
+    assert transfers.keys() == other_transfers.keys()
+    for number, (rate_MBps, left_MB) in transfers.items():
+        other_rate_MBps, other_left_MB = other_transfers[number]
+        assert rate_MBps == other_rate_MBps
+        assert close(left_MB, other_left_MB)
+    assert all(map(close, served_MB, other_served_MB))
+
+
+@settings(max_examples=200, deadline=None)
+@given(instances())
+def test_local_refresh_equals_global_refresh_after_every_event(instance):
+    local, globally = (simulation_of(instance, reach) for reach in Reach)
+
+    while local.outcome is None:
+        event, other = local.step(), globally.step()
+        assert type(event) is type(other)
+        assert_same(local, globally)
+    assert local.outcome == globally.outcome
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances())
+def test_completed_runs_serve_every_byte_on_every_hop_once(instance):
+    simulation = simulation_of(instance, Reach.LOCAL)
+    outcome = simulation.run()
+
+    if outcome.status is RunStatus.COMPLETED:
+        served_MB = sum(link.served_MB for link in simulation.state.links)
+        asked_MB_hops = sum(
+            each.entry.size_MB * len(each.route) for each in simulation.state.transfers.values()
+        )
+        assert math.isclose(served_MB, asked_MB_hops, rel_tol=1e-9, abs_tol=1e-9)
+        assert all(each.remaining_MB == 0 for each in simulation.state.transfers.values())
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances())
+def test_a_node_never_runs_two_tasks(instance):
+    simulation = simulation_of(instance, Reach.LOCAL)
+    simulation.run()
+
+    by_node = {}
+    for task in simulation.state.tasks:
+        if task.started_us is not None and task.ended_us is not None:
+            by_node.setdefault(task.node, []).append((task.started_us, task.ended_us))
+    for spans in by_node.values():
+        spans.sort()
+        assert all(a_end <= b_start for (_, a_end), (b_start, _) in pairwise(spans))
+
+
+@settings(max_examples=60, deadline=None)
+@given(instances())
+def test_makespan_is_at_least_the_critical_path_at_full_speed(instance):
+    network, injections, _ = instance
+    simulation = simulation_of(instance, Reach.LOCAL)
+    outcome = simulation.run()
+
+    if outcome.status is RunStatus.COMPLETED:
+        slack_us = 2 * len(simulation.state.tasks)  # each task and transfer may round by one
+        assert outcome.makespan_us + slack_us >= critical_path_us(simulation, injections, network)
+
+
+def critical_path_us(simulation, injections, network):
+    state, setup = simulation.state, simulation.setup
+    finish_us = []
+    for task in state.tasks:
+        start_us = injections[task.entry.dag].at_us
+        for entry in setup.dependencies:
+            if entry.target == task.entry.number:
+                start_us = max(start_us, finish_us[entry.source] + alone_us(entry, setup, state))
+        cost = task.entry.task.compute_cost
+        finish_us.append(start_us + cost / network.nodes[task.node].compute_capacity * 1e6)
+    return max(finish_us, default=0)
+
+
+def alone_us(entry, setup, state):
+    source, target = state.tasks[entry.source].node, state.tasks[entry.target].node
+    if source == target:
+        return 0.0
+    route = setup.routes.route(source, target)
+    rate_MBps = setup.network.route_bottleneck_MBps(route)
+    return (setup.network.route_latency_s(route) + entry.size_MB / rate_MBps) * 1e6
