@@ -2,12 +2,48 @@
 
 from collections.abc import Iterable
 
-from ncsim_core.plugins import Component, hookimpl
+from ncsim_core.plugins import Component, Section, hookimpl
 
 NCSIM_PLUGIN_API = "1.0"
+
+PAPER = "arXiv:2605.01094, Section IV-F"
 
 
 @hookimpl
 def ncsim_components() -> Iterable[Component]:
     """Return the components of this package."""
-    return []
+    return [
+        Component(
+            kind="link_model",
+            name="wifi",
+            factory="ncsim_wifi.link_models.wifi:WifiLinkModel",
+            summary="802.11 goodput from positions: path loss, rate table, overhead of access.",
+            options="ncsim_wifi:schemas/wifi.json",
+            capabilities=frozenset({"radio"}),
+            source=PAPER,
+        ),
+        Component(
+            kind="interference_model",
+            name="csma_bianchi",
+            factory="ncsim_wifi.interference_models.csma_bianchi:csma_bianchi",
+            summary="Carrier sensing, Bianchi contention and hidden terminals by SINR.",
+            options="ncsim_wifi:schemas/csma_bianchi.json",
+            capabilities=frozenset({"needs_radio"}),
+            source=PAPER,
+        ),
+    ]
+
+
+@hookimpl
+def ncsim_sections() -> Iterable[Section]:
+    """Return the config sections of this package."""
+    from ncsim_wifi.schemas import rf_schema
+
+    return [
+        Section(
+            name="rf",
+            summary="Parameters that all radios of the network share.",
+            schema=rf_schema(),
+            implies=frozenset({"radio"}),
+        )
+    ]

@@ -1,0 +1,1 @@
+"""How concurrent traffic slows wireless links."""

@@ -1,0 +1,65 @@
+"""The interference model ``csma_bianchi``: which rule it follows is an option."""
+
+from typing import Literal, TypeAlias
+
+from ncsim_core.context import BuildContext
+from ncsim_core.contracts.interference_model import InterferenceModel
+
+from ncsim_wifi.conflict import Relations, relations
+from ncsim_wifi.interference_models.effective_rate import EffectiveRateModel
+from ncsim_wifi.mac.timing import AxTiming
+from ncsim_wifi.propagation import is_on_air, propagation, require_positions
+from ncsim_wifi.radio import Radio
+from ncsim_wifi.service import Shares, levels_of
+
+HiddenModel: TypeAlias = Literal["effective_rate", "fixed_capture"]
+Components: TypeAlias = Literal["combined", "contention_only", "hidden_only"]
+
+
+def csma_bianchi(
+    context: BuildContext,
+    *,
+    hidden_model: HiddenModel = "effective_rate",
+    components: Components = "combined",
+    outage_floor_factor: float = 0.0,
+) -> InterferenceModel:
+    """Return the model of carrier sensing, contention and hidden terminals.
+
+    Models are pure, so the runs of a process share one per network and options.
+
+    Args:
+        context: Network and config section ``rf``.
+        hidden_model: What hidden interferers do: lower the rate, or destroy frames.
+        components: Leave out hidden interference or contention to see what the other does.
+        outage_floor_factor: The least factor that an active link is given; 0 is none.
+
+    Raises:
+        ScenarioError: Wireless links lack positions; all of them are named.
+        ModelScopeError: ``fixed_capture`` does not cover these radio parameters.
+    """
+    radio = Radio.from_section(context.section("rf"))
+    seed = context.seed if radio.shadow_fading_sigma > 0 else None
+    key = ("ncsim_wifi.csma_bianchi", radio, seed, hidden_model, components, outage_floor_factor)
+    return context.cached(key, lambda: _build(context, radio, components, outage_floor_factor))
+
+
+def _build(
+    context: BuildContext, radio: Radio, components: Components, outage_floor_factor: float
+) -> InterferenceModel:
+    network = context.network
+    on_air = [index for index, link in enumerate(network.links) if is_on_air(link)]
+    require_positions(network, on_air, "interference csma_bianchi")
+    related = _ablated(relations(context, radio), components)
+    levels = levels_of(propagation(context, radio), related, radio)
+    shares = Shares(AxTiming(radio.rts_cts), outage_floor_factor)
+    return EffectiveRateModel(related, levels, shares)
+
+
+def _ablated(related: Relations, components: Components) -> Relations:
+    match components:
+        case "combined":
+            return related
+        case "contention_only":
+            return related.without_hidden()
+        case "hidden_only":
+            return related.without_contention()

@@ -1,0 +1,118 @@
+"""Contention after Bianchi, and hidden interference as a lower effective rate: plain form."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from ncsim_core.contracts.interference_model import (
+    Competition,
+    InterferenceModel,
+    InterferenceSession,
+)
+from ncsim_core.network import LinkIndex
+from typing_extensions import override
+
+from ncsim_wifi.conflict import Relations
+from ncsim_wifi.interference_models.matrix_session import MatrixSession
+from ncsim_wifi.interference_models.row_session import RowSession, influence_rows
+from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.service import Levels, Shares
+
+MAX_LINKS_OF_ROW_SESSION = 200  # measured: see benchmarks/wifi_precomputation.py
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What a set of active links does to every link, in link order.
+
+    Args:
+        contenders: Active links in the conflict neighbourhood.
+        interferers: Active hidden interferers.
+        hidden_units: Their power at the receiver, in its quantum.
+    """
+
+    contenders: IntArray
+    interferers: IntArray
+    hidden_units: IntArray
+
+
+def tally(active: Collection[LinkIndex], related: Relations, levels: Levels) -> Tally:
+    """Return what a set of active links does to every link; whole numbers, so in any order."""
+    contenders, interferers, hidden_units = (
+        np.zeros(related.link_count, np.int64) for _ in range(3)
+    )
+    for link in active:
+        contenders[related.conflicts.of(link)] += 1
+        row = related.victims.row(link)
+        victims = related.victims.links[row]
+        interferers[victims] += 1
+        hidden_units[victims] += levels.victim_units[row]
+    return Tally(contenders, interferers, hidden_units)
+
+
+class EffectiveRateModel(InterferenceModel):
+    """Scales a link by R_eff eta(n, R_eff) / (n R eta(1, R)).
+
+    Source: Eq. 12 (``eq:combined``); SPEC 4 and 5.
+
+    Args:
+        related: Conflict graph and hidden interference.
+        levels: Effective rates under hidden interference.
+        shares: Factors by rates and number of stations.
+    """
+
+    def __init__(self, related: Relations, levels: Levels, shares: Shares) -> None:
+        self._related = related
+        self._levels = levels
+        self._shares = shares
+
+    @override
+    def factors(self, links: Sequence[LinkIndex], active: Collection[LinkIndex]) -> FloatArray:
+        counts = tally(active, self._related, self._levels)
+        stations, hidden_units = counts.contenders + 1, counts.hidden_units
+        return np.array(
+            [self._factor(link, int(stations[link]), int(hidden_units[link])) for link in links],
+            dtype=np.float64,
+        )
+
+    @override
+    def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
+        reached = set(changed)
+        for link in changed:
+            reached.update(self._related.conflicts.of(link).tolist())
+            reached.update(self._related.victims.of(link).tolist())
+        return reached
+
+    @override
+    def competition(
+        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
+    ) -> Sequence[Competition]:
+        counts = tally(active, self._related, self._levels)
+        return [
+            Competition(
+                int(counts.contenders[link]),
+                int(counts.interferers[link]),
+                self._levels.hidden_factor(link, int(counts.hidden_units[link])),
+            )
+            for link in links
+        ]
+
+    @override
+    def open_session(self) -> InterferenceSession:
+        if self._related.link_count <= MAX_LINKS_OF_ROW_SESSION:
+            return RowSession(self._rows, self._levels, self._shares, self._share_rows)
+        return MatrixSession(self._related, self._levels, self._shares, self._share_rows)
+
+    @cached_property
+    def _rows(self) -> list[list[int]]:
+        return influence_rows(self._related, self._levels)
+
+    @cached_property
+    def _share_rows(self) -> list[list[list[float]]]:
+        return self._shares.rows_by_level(self._levels)
+
+    def _factor(self, link: LinkIndex, stations: int, hidden_units: int) -> float:
+        clean_Mbps = self._levels.rates_Mbps[link][0]
+        effective_Mbps = self._levels.effective_rate_Mbps(link, hidden_units)
+        return self._shares.factor(clean_Mbps, effective_Mbps, stations)

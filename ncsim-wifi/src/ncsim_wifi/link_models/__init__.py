@@ -1,0 +1,1 @@
+"""What a wireless link offers alone."""
