@@ -1,0 +1,101 @@
+"""Builds what a scenario names: first the clean rates of the network, then the models.
+
+Clean rates are decided here, once, before any snapshot or route.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ncsim_core.context import BuildContext
+from ncsim_core.contracts.link_model import LinkModel
+from ncsim_core.errors import PluginError
+from ncsim_core.models import ComponentIdentity, Models
+from ncsim_core.network import LinkRates, Network
+from ncsim_core.registry import Registry, get_registry
+from ncsim_core.scenario.model import Scenario
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Everything a run is made of.
+
+    Args:
+        network: The scenario's network, its clean rates decided.
+        models: The six components.
+    """
+
+    network: Network
+    models: Models
+
+
+def assemble(scenario: Scenario, registry: Registry | None = None) -> Assembly:
+    """Return the rated network of a scenario and the models that decide on it.
+
+    Raises:
+        PluginError: A component does not build, or its link rates are not numbers of 0 or more.
+        ScenarioError: A component refuses the scenario.
+    """
+    registry = registry or get_registry()
+    link_model, identity = _build("link_model", scenario, scenario.network, registry)
+    network = _rated(scenario, link_model, identity)
+    others = {
+        kind: _build(kind, scenario, network, registry)
+        for kind in ("scheduler", "routing_model", "interference_model", "dag_source")
+    }
+    queue = scenario.config.components["queue_model"]
+    context = _context(scenario, network)
+    new_queue: Any
+    new_queue, queue_identity = registry.builder("queue_model", queue.name, queue.options, context)
+    identities = {kind: who for kind, (_, who) in others.items()}
+    models = Models(
+        scheduler=others["scheduler"][0],
+        routing=others["routing_model"][0],
+        link_model=link_model,
+        interference=others["interference_model"][0],
+        new_queue=new_queue,
+        dag_source=others["dag_source"][0],
+        identities={**identities, "link_model": identity, "queue_model": queue_identity},
+    )
+    return Assembly(network, models)
+
+
+def link_rates_fault(rates: object, link_count: int) -> str | None:
+    """Return why an answer cannot be the rates of ``link_count`` links, or ``None``."""
+    if not isinstance(rates, LinkRates):
+        return f"it gave {rates!r}, not LinkRates"
+    for name in ("bandwidth_MBps", "latency_s"):
+        values = getattr(rates, name)
+        if len(values) != link_count:
+            return f"{name} has {len(values)} values for {link_count} links"
+        for index, value in enumerate(values):
+            if not (math.isfinite(value) and value >= 0):
+                return f"{name} of link index {index} is {value!r}; it must be finite, 0 or more"
+    return None
+
+
+def _rated(scenario: Scenario, link_model: LinkModel, identity: ComponentIdentity) -> Network:
+    network = scenario.network
+    rates = link_model.rate_links(network)
+    fault = link_rates_fault(rates, len(network.links))
+    if fault is not None:
+        raise PluginError(f"{identity}: rate_links(): {fault}")
+    return network.with_rates(rates)
+
+
+def _build(
+    kind: str, scenario: Scenario, network: Network, registry: Registry
+) -> tuple[Any, ComponentIdentity]:
+    spec = scenario.config.components[kind]
+    return registry.build(kind, spec.name, spec.options, _context(scenario, network))
+
+
+def _context(scenario: Scenario, network: Network) -> BuildContext:
+    sections: Mapping[str, Mapping[str, object]] = scenario.config.sections
+    return BuildContext(
+        network=network,
+        seed=scenario.config.seed,
+        sections=sections,
+        injections=scenario.injections,
+    )

@@ -1,0 +1,221 @@
+"""Schema errors in the words of the user: what is wrong, and what was probably meant."""
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any, TypeAlias
+
+from ncsim_core.errors import PluginError
+from ncsim_core.plugins import KINDS
+from ncsim_core.registry import Registry
+from ncsim_core.scenario.faults import Data, Path, Problem, shown
+from ncsim_core.scenario.plain_fit import plain_fit
+from ncsim_core.scenario.schema import compose_schema
+
+Finding: TypeAlias = Any
+"""A ``jsonschema.ValidationError``, whose fields depend on the keyword that failed."""
+
+KIND_BY_CONFIG_KEY = {kind.config_key: kind.name for kind in KINDS.values()}
+
+_TYPE_WORDS = {
+    "object": "a mapping",
+    "array": "a list",
+    "string": "text",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+    "null": "nothing",
+}
+_BOOLEAN_WORDS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false"}
+_BOUND_WORDS = {
+    "minimum": "at least",
+    "maximum": "at most",
+    "exclusiveMinimum": "greater than",
+    "exclusiveMaximum": "less than",
+}
+
+
+def schema_problems(document: object, registry: Registry) -> list[Problem]:
+    """Return everything in which ``document`` departs from the composed schema."""
+    schema = compose_schema(registry)
+    if plain_fit(schema)(document):
+        return []
+    problems: dict[tuple[Path, str], Problem] = {}
+    for error in _flat(_findings(document, schema)):
+        for problem in _problems_of(error, registry):
+            problems.setdefault((problem.path, problem.message), problem)
+    return _without_echoes(list(problems.values()))
+
+
+def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:
+    """Return the candidate that was probably meant by ``word``."""
+    return next(iter(difflib.get_close_matches(str(word), sorted(candidates), n=1)), None)
+
+
+def _findings(document: Data, schema: Mapping[str, Any]) -> Iterator[Finding]:
+    """Yield what a draft-07 validator finds; it passes over list items that plainly fit."""
+    from jsonschema import Draft7Validator
+    from jsonschema.validators import extend
+
+    def items(validator: Data, item_schema: Data, data: Data, _schema: Data) -> Iterator[Finding]:
+        if not isinstance(data, list):
+            return
+        fits = plain_fit(item_schema, schema)
+        for index, item in enumerate(data):
+            if not fits(item):
+                yield from validator.descend(item, item_schema, path=index)
+
+    validator: Any = extend(Draft7Validator, {"items": items})  # type: ignore[no-untyped-call]
+    yield from validator(schema).iter_errors(document)
+
+
+def _flat(errors: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield errors without alternatives: of ``anyOf``, the branch that fits the data's form."""
+    for error in errors:
+        branch = _branch_meant(error) if error.validator == "anyOf" else []
+        if branch:
+            yield from _flat(branch)
+        else:
+            yield error
+
+
+def _branch_meant(error: Finding) -> list[Finding]:
+    """Return the errors of the branch for mappings, if the data is one; else none."""
+    if not isinstance(error.instance, dict):
+        return []
+    for index, branch in enumerate(error.validator_value):
+        if branch.get("type") == "object":
+            return [each for each in error.context or () if each.schema_path[0] == index]
+    return []
+
+
+def _problems_of(error: Finding, registry: Registry) -> Iterable[Problem]:
+    path: Path = tuple(error.absolute_path)
+    kind = _component_kind(path)
+    if kind is not None and error.validator in {"anyOf", "enum", "pattern"}:
+        return [_component_problem(path, kind, error, registry)]
+    explain = _EXPLAINERS.get(str(error.validator))
+    if explain is None:
+        return [Problem(path, error.message, shown(error.instance))]
+    return explain(path, error)
+
+
+def _component_kind(path: Path) -> str | None:
+    """Return the kind whose component name stands at ``path``, if one does."""
+    if path[:2] != ("scenario", "config") or len(path) not in (3, 4):
+        return None
+    if len(path) == 4 and path[3] != "type":  # noqa: PLR2004 - config, kind, type
+        return None
+    return KIND_BY_CONFIG_KEY.get(str(path[2]))
+
+
+def _component_problem(path: Path, kind: str, error: Finding, registry: Registry) -> Problem:
+    name = error.instance
+    if not isinstance(name, str):
+        return Problem(path, f"must be the name of a {kind}, not {shown(name)}", shown(name))
+    try:
+        registry.find(kind, name)
+    except PluginError as unknown:
+        return Problem(path, str(unknown), shown(name))
+    return Problem(path, error.message, shown(name))
+
+
+def _unknown_keys(path: Path, error: Finding) -> Iterable[Problem]:
+    known = error.schema.get("properties", {})
+    for key in error.instance:
+        if key not in known:
+            yield _unknown_key(path, key, [each for each in known if each != "$schema"])
+
+
+def _unknown_key(path: Path, key: str, known: list[str]) -> Problem:
+    meant = did_you_mean(key, known)
+    listing = f"; known here: {', '.join(known) or 'none'}" if meant is None else ""
+    return Problem((*path, key), f"unknown key {key!r}{listing}", key, meant, is_about_key=True)
+
+
+def _missing_keys(path: Path, error: Finding) -> Iterable[Problem]:
+    missing = [key for key in error.validator_value if key not in error.instance]
+    for key in missing:
+        yield Problem(path, f"{key!r} is missing")
+
+
+def _wrong_type(path: Path, error: Finding) -> Iterable[Problem]:
+    wanted = error.validator_value
+    names = [wanted] if isinstance(wanted, str) else wanted
+    expected = " or ".join(_TYPE_WORDS.get(name, name) for name in names)
+    found = error.instance
+    article = "the text " if isinstance(found, str) else ""
+    message = f"must be {expected}, not {article}{shown(found)}{_advice(names, found)}"
+    yield Problem(path, message, shown(found), _meant_value(names, found))
+
+
+def _advice(wanted: list[str], found: object) -> str:
+    if "string" in wanted and isinstance(found, bool | int | float):
+        return "; put it in quotes"
+    if isinstance(found, str) and {"number", "integer"} & set(wanted):
+        return _number_advice(found)
+    return ""
+
+
+def _number_advice(text: str) -> str:
+    """Return why a word that looks like a number is none."""
+    if re.fullmatch(r"[-+]?\d+(:\d+)+(\.\d*)?", text):
+        return " (write a time as a plain number of seconds)"
+    if re.fullmatch(r"[-+]?0[0-9xob][0-9a-fA-F]*", text):
+        return " (a leading zero means octal or hexadecimal to some readers; write a plain number)"
+    if re.fullmatch(r"[-+]?[\d_,]+(\.\d*)?", text) and ("_" in text or "," in text):
+        return " (write digits without separators)"
+    if re.fullmatch(r"[-+]?\d+(\.\d*)?([eE][-+]?\d+)?", text):
+        return " (remove the quotes)"
+    if re.match(r"[-+]?\d", text):
+        return " (write the number without a unit)"
+    return ""
+
+
+def _meant_value(wanted: list[str], found: object) -> str | None:
+    if "boolean" in wanted and isinstance(found, str):
+        return _BOOLEAN_WORDS.get(found.lower())
+    return None
+
+
+def _not_a_choice(path: Path, error: Finding) -> Iterable[Problem]:
+    choices = [str(choice) for choice in error.validator_value]
+    meant = did_you_mean(error.instance, choices)
+    message = f"must be one of {', '.join(choices)}, not {shown(error.instance)}"
+    yield Problem(path, message, shown(error.instance), meant)
+
+
+def _out_of_bounds(path: Path, error: Finding) -> Iterable[Problem]:
+    words = _BOUND_WORDS[str(error.validator)]
+    message = f"must be {words} {error.validator_value}, not {shown(error.instance)}"
+    yield Problem(path, message, shown(error.instance))
+
+
+def _too_short(path: Path, error: Finding) -> Iterable[Problem]:
+    yield Problem(path, f"needs at least {error.validator_value}, has {len(error.instance)}")
+
+
+def _wrong_text(path: Path, error: Finding) -> Iterable[Problem]:
+    reason = "must not be empty" if error.instance == "" else "must be one line of plain text"
+    yield Problem(path, f"{reason}, not {shown(error.instance)}", shown(error.instance))
+
+
+_EXPLAINERS: Mapping[str, Callable[[Path, Finding], Iterable[Problem]]] = {
+    "additionalProperties": _unknown_keys,
+    "required": _missing_keys,
+    "type": _wrong_type,
+    "enum": _not_a_choice,
+    "minItems": _too_short,
+    "pattern": _wrong_text,
+    **dict.fromkeys(_BOUND_WORDS, _out_of_bounds),
+}
+
+
+def _without_echoes(problems: list[Problem]) -> list[Problem]:
+    """Leave out "'x' is missing" where a misspelt x stands beside it."""
+    spelt_wrong = {
+        (problem.path[:-1], f"{problem.suggestion!r} is missing")
+        for problem in problems
+        if problem.is_about_key
+    }
+    return [each for each in problems if (each.path, each.message) not in spelt_wrong]

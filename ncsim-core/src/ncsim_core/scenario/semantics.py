@@ -1,0 +1,194 @@
+"""What no schema can say: unique ids, ends that exist, DAGs without cycles, finite numbers.
+
+All checks work on plain rows and pass over what the schema has already refused, so that one
+mistake is reported once, and all mistakes at once.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+from ncsim_core.plugins import KINDS
+from ncsim_core.registry import Registry
+from ncsim_core.scenario.explain import did_you_mean
+from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
+from ncsim_core.scenario.model import Config
+from ncsim_core.scenario.resolution import RADIO
+
+Row: TypeAlias = Mapping[str, Any]
+
+
+def number_problems(document: object) -> Iterator[Problem]:
+    """Yield every number that is infinite or not a number, wherever it stands."""
+    waiting: list[tuple[Path, Any]] = [((), document)]
+    while waiting:
+        path, value = waiting.pop()
+        children: Any = ()
+        if isinstance(value, dict):
+            children = value.items()
+        elif isinstance(value, list):
+            children = enumerate(value)
+        elif isinstance(value, float) and not math.isfinite(value):
+            yield Problem(path, f"must be a finite number, not {value}", str(value))
+        waiting += [
+            ((*path, step), child)
+            for step, child in children
+            if isinstance(child, dict | list | float)
+        ]
+
+
+def network_problems(scenario: Row) -> Iterator[Problem]:
+    """Yield repeated ids of nodes and links, and links that lead nowhere."""
+    nodes = list(rows(scenario, ("scenario", "network", "nodes")))
+    links = list(rows(scenario, ("scenario", "network", "links")))
+    yield from _repeated(nodes, "node")
+    yield from _repeated(links, "link")
+    node_ids = _ids(nodes)
+    for path, link in links:
+        for end in ("from", "to"):
+            yield from _dangling((*path, end), link.get(end), node_ids, "node")
+        if "from" in link and link["from"] == link.get("to"):
+            yield Problem((*path, "to"), "a link must not lead from a node to itself", link["to"])
+
+
+def dag_problems(scenario: Row) -> Iterator[Problem]:
+    """Yield repeated ids, edges that lead nowhere or stand twice, cycles, and wrong pins."""
+    node_ids = _ids(list(rows(scenario, ("scenario", "network", "nodes"))))
+    dags = list(rows(scenario, ("scenario", "dags")))
+    yield from _repeated(dags, "DAG")
+    for path, dag in dags:
+        tasks = list(rows(dag, (*path, "tasks"), start=len(path)))
+        edges = list(rows(dag, (*path, "edges"), start=len(path)))
+        yield from _repeated(tasks, "task")
+        for task_path, task in tasks:
+            yield from _dangling((*task_path, "pinned_to"), task.get("pinned_to"), node_ids, "node")
+        yield from _edge_problems(tasks, edges)
+
+
+def config_problems(scenario: Row, config: Config, registry: Registry) -> Iterator[Problem]:
+    """Yield what the chosen components miss in the rest of the scenario."""
+    yield from _link_model_problems(scenario, config, registry)
+    dags = list(rows(scenario, ("scenario", "dags")))
+    if config.components["scheduler"].name == "manual":
+        yield from _unpinned(dags)
+    if config.components["dag_source"].name == "single" and len(dags) != 1:
+        path = ("scenario", "config", KINDS["dag_source"].config_key)
+        message = f"dag_source single needs exactly one DAG, the scenario has {len(dags)}"
+        yield Problem(path, message, suggestion="multi")
+
+
+def rows(data: Data, path: Path, start: int = 0) -> Iterator[tuple[Path, Row]]:
+    """Yield the mappings in the list at ``path``, each with its path.
+
+    Args:
+        data: What lies ``start`` steps down ``path``.
+        path: From the root to the list.
+        start: Steps of ``path`` that ``data`` is already behind.
+    """
+    for step in path[start:]:
+        data = data.get(step) if isinstance(data, dict) else None
+    for index, row in enumerate(data if isinstance(data, list) else ()):
+        if isinstance(row, dict):
+            yield (*path, index), row
+
+
+def _ids(listed: list[tuple[Path, Row]]) -> dict[str, None]:
+    """Return ids in file order; a number counts as its text, for it has a fault of its own."""
+    return {str(row["id"]): None for _, row in listed if "id" in row}
+
+
+def _repeated(listed: list[tuple[Path, Row]], noun: str) -> Iterator[Problem]:
+    first: dict[str, Path] = {}
+    for path, row in listed:
+        name = row.get("id")
+        if not isinstance(name, str):
+            continue
+        if name in first:
+            message = f"{noun} {name!r} is given twice, first as {path_text(first[name])}"
+            yield Problem((*path, "id"), message, name)
+        first.setdefault(name, path)
+
+
+def _dangling(path: Path, name: object, known: Mapping[str, None], noun: str) -> Iterator[Problem]:
+    if isinstance(name, str) and name and name not in known:
+        yield Problem(path, f"no {noun} {name!r}", shown(name), did_you_mean(name, known))
+
+
+def _edge_problems(
+    tasks: list[tuple[Path, Row]], edges: list[tuple[Path, Row]]
+) -> Iterator[Problem]:
+    task_ids = _ids(tasks)
+    first: dict[tuple[str, str], Path] = {}
+    for path, edge in edges:
+        source, target = edge.get("from"), edge.get("to")
+        yield from _dangling((*path, "from"), source, task_ids, "task")
+        yield from _dangling((*path, "to"), target, task_ids, "task")
+        if not (isinstance(source, str) and isinstance(target, str)):
+            continue
+        if (source, target) in first:
+            earlier = path_text(first[source, target])
+            message = f"edge {source!r} -> {target!r} is given twice, first as {earlier}"
+            yield Problem(path, message)
+        first.setdefault((source, target), path)
+    yield from _cycle(first)
+
+
+def _cycle(edges: Mapping[tuple[str, str], Path]) -> Iterator[Problem]:
+    """Yield one cycle, if there is any, at the edge that closes it."""
+    sorter: TopologicalSorter[str] = TopologicalSorter()
+    for source, target in edges:
+        sorter.add(target, source)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        tasks: list[str] = error.args[1]
+        path = max(edges[pair] for pair in pairwise(tasks))
+        yield Problem(path, f"the edges form a cycle: {' -> '.join(tasks)}")
+
+
+def _unpinned(dags: list[tuple[Path, Row]]) -> Iterator[Problem]:
+    for path, dag in dags:
+        for task_path, task in rows(dag, (*path, "tasks"), start=len(path)):
+            if "pinned_to" not in task:
+                message = "scheduler manual needs pinned_to on every task"
+                yield Problem(task_path, message, shown(task.get("id")))
+
+
+def _link_model_problems(scenario: Row, config: Config, registry: Registry) -> Iterator[Problem]:
+    name = config.components["link_model"].name
+    bare = [
+        (path, link)
+        for path, link in rows(scenario, ("scenario", "network", "links"))
+        if "bandwidth" not in link
+    ]
+    if name == "static":
+        for path, _ in bare:
+            message = (
+                "link model static needs a bandwidth, MB/s; give one, or choose a link_model that "
+                f"derives it from positions{_radio_models(registry)}"
+            )
+            yield Problem(path, message)
+    elif RADIO in registry.find("link_model", name).component.capabilities:
+        yield from _without_position(scenario, bare, name)
+
+
+def _radio_models(registry: Registry) -> str:
+    models = registry.components("link_model")
+    names = [each.component.name for each in models if RADIO in each.component.capabilities]
+    return f" ({', '.join(names)})" if names else ""
+
+
+def _without_position(
+    scenario: Row, bare: list[tuple[Path, Row]], link_model: str
+) -> Iterator[Problem]:
+    """Yield nodes without position at the ends of links whose rate must come from it."""
+    need = {str(link.get(end)): link.get("id") for _, link in bare for end in ("to", "from")}
+    for path, node in rows(scenario, ("scenario", "network", "nodes")):
+        if "position" not in node and node.get("id") in need:
+            message = (
+                f"node {node['id']!r} needs a position: link model {link_model} derives the rate "
+                f"of link {need[node['id']]!r} from it; or give that link a bandwidth, MB/s"
+            )
+            yield Problem(path, message)
