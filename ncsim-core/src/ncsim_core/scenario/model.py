@@ -75,10 +75,10 @@ class Scenario:
             "scenario": {
                 **head,
                 "network": {
-                    "nodes": [_node_row(node) for node in self.network.nodes],
-                    "links": [_link_row(link) for link in self.network.links],
+                    "nodes": [node_row(node) for node in self.network.nodes],
+                    "links": [link_row(link) for link in self.network.links],
                 },
-                "dags": [_dag_row(injection) for injection in self.injections],
+                "dags": [dag_row(injection) for injection in self.injections],
                 "config": _config_rows(self.config),
             }
         }
@@ -96,21 +96,24 @@ class Scenario:
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _node_row(node: Node) -> dict[str, object]:
+def node_row(node: Node) -> dict[str, object]:
+    """Return a node as a file states it."""
     row: dict[str, object] = {"id": node.id, "compute_capacity": node.compute_capacity}
     if node.position is not None:
         row["position"] = {"x": node.position.x_m, "y": node.position.y_m}
     return row
 
 
-def _link_row(link: Link) -> dict[str, object]:
+def link_row(link: Link) -> dict[str, object]:
+    """Return a link as a file states it."""
     row: dict[str, object] = {"id": link.id, "from": link.source, "to": link.target}
     if link.bandwidth_MBps is not None:
         row["bandwidth"] = link.bandwidth_MBps
     return {**row, "latency": link.latency_s, "medium": link.medium}
 
 
-def _dag_row(injection: Injection) -> dict[str, object]:
+def dag_row(injection: Injection) -> dict[str, object]:
+    """Return a DAG and its time as a file states them."""
     dag = injection.dag
     return {
         "id": dag.id,
