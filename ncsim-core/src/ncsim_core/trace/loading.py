@@ -1,7 +1,8 @@
 """Reads a trace into tables."""
 
-from collections.abc import Iterator, Sized
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from ncsim_core.trace.building import RunBuilder
 from ncsim_core.trace.reader import read_trace
@@ -38,19 +39,30 @@ def load_run(path: Path | str) -> RunTrace:
         return builder.build()
 
 
+class Introduced(NamedTuple):
+    """How many of each a trace has introduced so far; numbers must be below."""
+
+    nodes: int
+    links: int
+    dags: int
+    tasks: int
+    edges: int
+
+
 def enter(record: TraceRecord, builder: RunBuilder) -> None:
     """Enter a record into tables in the making.
 
     Raises:
         ValueError: It names something that was not introduced.
     """
+    preamble = builder.preamble
+    counts = map(len, (preamble.nodes, preamble.links, builder.dags, builder.names, builder.edges))
+    expect_introduced(record, Introduced(*counts))
     builder.now_us = record.at_us
     match record:
         case Injected():
             builder.inject(record)
         case Placed(_, _, dag, nodes):
-            _expect_known("DAG", [dag], builder.dags)
-            _expect_known("node", nodes, builder.preamble.nodes)
             builder.place(dag, nodes)
         case Ready() | Started() | Ended():
             _enter_task(record, builder)
@@ -62,8 +74,38 @@ def enter(record: TraceRecord, builder: RunBuilder) -> None:
             pass
 
 
+def expect_introduced(record: TraceRecord, introduced: Introduced) -> None:
+    """Check that every number in a record points to something.
+
+    Raises:
+        ValueError: One does not.
+    """
+    match record:
+        case Placed(_, _, dag, nodes):
+            _expect_below(introduced.dags, "DAG", [dag])
+            _expect_below(introduced.nodes, "node", nodes)
+        case Ready(_, _, task, node) | Started(_, _, task, node) | Ended(_, _, task, node):
+            _expect_below(introduced.tasks, "task", [task])
+            _expect_below(introduced.nodes, "node", [node])
+        case TransferStarted(_, _, transfer, route):
+            _expect_below(introduced.edges, "transfer", [transfer])
+            _expect_below(introduced.links, "link", route)
+        case TransferEnded(_, _, transfer):
+            _expect_below(introduced.edges, "transfer", [transfer])
+        case RatesAssigned():
+            _expect_below(introduced.edges, "transfer", [record.cause[1], *record.transfers])
+            _expect_below(introduced.links, "link", record.bottlenecks)
+        case Injected() | Note() | Done():
+            pass
+
+
+def _expect_below(count: int, what: str, numbers: list[int]) -> None:
+    for number in numbers:
+        if number >= count:
+            raise ValueError(f"{what} {number} has not been introduced; there are {count}")
+
+
 def _enter_task(record: Ready | Started | Ended, builder: RunBuilder) -> None:
-    _expect_known("task", [record.task], builder.names)
     match record:
         case Ready():
             builder.ready_us[record.task] = record.at_us
@@ -78,16 +120,11 @@ def _enter_transfer(
 ) -> None:
     match record:
         case TransferStarted(_, at_us, transfer, route):
-            _expect_known("transfer", [transfer], builder.edges)
-            _expect_known("link", route, builder.preamble.links)
             builder.route[transfer] = tuple(route)
             builder.transfer_started_us[transfer] = at_us
         case TransferEnded(_, at_us, transfer):
-            _expect_known("transfer", [transfer], builder.edges)
             builder.transfer_ended_us[transfer] = at_us
         case RatesAssigned():
-            _expect_known("transfer", [record.cause[1], *record.transfers], builder.edges)
-            _expect_known("link", record.bottlenecks, builder.preamble.links)
             for transfer, step in rate_steps(record):
                 builder.add_step(transfer, step)
 
@@ -111,9 +148,3 @@ def rate_steps(record: RatesAssigned) -> Iterator[tuple[int, RateStep]]:
                 record.at_us, rate_MBps, link, contenders, hidden, factor, flows, change, cause
             ),
         )
-
-
-def _expect_known(what: str, numbers: list[int], table: Sized) -> None:
-    for number in numbers:
-        if number >= len(table):
-            raise ValueError(f"{what} {number} has not been introduced; there are {len(table)}")
