@@ -29,6 +29,7 @@ def ncsim_components() -> Iterable[Component]:
             name="direct",
             factory="ncsim_core.builtin.routing_models:DirectRouting",
             summary="Takes the one link from source to target; no multi-hop routes.",
+            capabilities=frozenset({"single_hop"}),
         ),
         Component(
             kind="link_model",
@@ -48,6 +49,7 @@ def ncsim_components() -> Iterable[Component]:
             name="fifo",
             factory="ncsim_core.builtin.queue_models:FifoQueue",
             summary="First in, first out.",
+            capabilities=frozenset({"order=fifo"}),
         ),
         Component(
             kind="dag_source",

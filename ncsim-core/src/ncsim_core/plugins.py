@@ -110,7 +110,10 @@ class Component:
         capabilities: Claims that choose defaults and conformance checks. ``radio``: a
             link model that derives rates from positions. ``needs_radio``: an interference
             model that wants such a link model. ``monotone``, ``scale_invariant``,
-            ``objective=hops|latency|bottleneck``: extra properties to be tested.
+            ``objective=hops|latency|bottleneck``, ``order=fifo|lifo|shortest|longest``:
+            extra properties to be tested. ``single_hop``: a routing model that only ever
+            takes one link.
+        expected_failures: Conformance checks that it is known to fail, name to reason.
         source: Where the method is described: equation, paper, DOI.
     """
 
@@ -122,6 +125,7 @@ class Component:
     params: Mapping[str, object] = field(default_factory=dict)
     requires: tuple[str, ...] = ()
     capabilities: frozenset[str] = frozenset()
+    expected_failures: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
 
 

@@ -2,7 +2,6 @@
 
 import importlib.metadata
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib.metadata import EntryPoint
@@ -20,7 +19,12 @@ from ncsim_core.registry.declarations import (
     declared_sections,
     refuse_unmarked_hooks,
 )
-from ncsim_core.registry.records import PluginRecord, RegisteredComponent, RegisteredSection
+from ncsim_core.registry.records import (
+    PluginRecord,
+    RegisteredComponent,
+    RegisteredSection,
+    normalised,
+)
 
 CORE = "ncsim-core"
 
@@ -160,9 +164,9 @@ def _identify(entry_point: EntryPoint) -> PluginRecord:
     """Return a record with the distribution, or with the entry point's name if it has none."""
     try:
         assert entry_point.dist is not None
-        return PluginRecord(_normalised(entry_point.dist.name), str(entry_point.dist.version))
+        return PluginRecord(normalised(entry_point.dist.name), str(entry_point.dist.version))
     except Exception:
-        return PluginRecord(_normalised(entry_point.name), "unknown")
+        return PluginRecord(normalised(entry_point.name), "unknown")
 
 
 def _raise_if_strict(selection: Selection, record: PluginRecord) -> None:
@@ -181,9 +185,5 @@ def _described(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
-def _normalised(name: str) -> str:
-    return re.sub(r"[-_.]+", "-", name).lower()
-
-
 def _names(text: str) -> frozenset[str]:
-    return frozenset(_normalised(name.strip()) for name in text.split(",") if name.strip())
+    return frozenset(normalised(name.strip()) for name in text.split(",") if name.strip())

@@ -1,6 +1,7 @@
 """What the registry knows: plug-ins, and the components and sections they brought."""
 
 import importlib.metadata
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -88,6 +89,15 @@ class RegisteredSection:
     distribution: str
     version: str
     schema: OptionsSchema
+
+
+def normalised(name: str) -> str:
+    """Return a distribution's name as package tools compare it.
+
+    >>> normalised("My_Plugin")
+    'my-plugin'
+    """
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def requirement_fault(text: str) -> str | None:

@@ -1,0 +1,229 @@
+"""Checks, how one is run, and what comes of it as data.
+
+A check is a method ``check_<name>`` of a suite. Its parameters after ``subject`` are drawn by
+hypothesis, always the same ones on every machine, so that a green run stays green.
+"""
+
+import inspect
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, TypeVar, cast
+
+from hypothesis import HealthCheck, Phase, given, reject, settings
+from hypothesis import strategies as st
+from hypothesis.errors import Unsatisfiable
+from hypothesis.strategies import SearchStrategy
+
+from ncsim_core.errors import ModelScopeError, ScenarioError
+from ncsim_core.testing.questions import Case
+from ncsim_core.testing.subject import Subject
+
+if TYPE_CHECKING:
+    from ncsim_core.registry import Registry
+    from ncsim_core.testing.suites.base import ComponentSuite
+
+CheckStatus: TypeAlias = Literal[
+    "passed", "failed", "skipped", "expected_failure", "unexpected_pass"
+]
+
+CheckBody = TypeVar("CheckBody", bound=Callable[..., None])
+
+PREFIX = "check_"
+
+
+@dataclass(frozen=True)
+class Check:
+    """One property of a contract.
+
+    Args:
+        name: What it claims, in words joined by ``_``.
+        body: The suite's method.
+        capability: Run only for components that declare it.
+        is_drawn: Whether options and cases are drawn; otherwise it runs once.
+        drawn: Names of the parameters to be drawn.
+    """
+
+    name: str
+    body: Callable[..., None]
+    capability: str | None
+    is_drawn: bool
+    drawn: tuple[str, ...]
+
+    @property
+    def claim(self) -> str:
+        """Return the first line of its docstring."""
+        return (inspect.getdoc(self.body) or self.name).splitlines()[0]
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What came of one check of one component.
+
+    Args:
+        component: Qualified name; a distribution for checks of a whole plug-in.
+        check: Name of the check.
+        status: How it ended.
+        detail: Why it failed or was skipped.
+        duration_s: Time it took.
+        error: What was raised, for those who want the traceback.
+    """
+
+    component: str
+    check: str
+    status: CheckStatus
+    detail: str = ""
+    duration_s: float = 0.0
+    error: BaseException | None = None
+
+    @property
+    def is_bad(self) -> bool:
+        """Return whether it should keep a plug-in from being published."""
+        return self.status in ("failed", "unexpected_pass")
+
+
+class ComponentChecks(Protocol):
+    """What running a check needs to know of a suite."""
+
+    examples: int
+
+    def subject(self) -> Subject:
+        """Return the component with default options."""
+
+    def option_values(self, subject: Subject) -> SearchStrategy[Mapping[str, object]]:
+        """Return the options to draw."""
+
+    def section_values(
+        self, subject: Subject
+    ) -> SearchStrategy[Mapping[str, Mapping[str, object]]]:
+        """Return the config sections to draw."""
+
+    def strategies(self) -> Mapping[str, SearchStrategy[object]]:
+        """Return what each parameter of a check may be."""
+
+
+def check(
+    *, capability: str | None = None, is_drawn: bool = True
+) -> Callable[[CheckBody], CheckBody]:
+    """Mark a method ``check_<name>(self, subject, ...)`` as a check."""
+
+    def mark(body: CheckBody) -> CheckBody:
+        parameters = list(inspect.signature(body).parameters)[2:]
+        name = body.__name__.removeprefix(PREFIX)
+        body.ncsim_check = Check(  # type: ignore[attr-defined]
+            name, body, capability, is_drawn, tuple(parameters)
+        )
+        return body
+
+    return mark
+
+
+def result_of(suite: ComponentChecks, one: Check, expected: Mapping[str, str]) -> CheckResult:
+    """Return what comes of one check; it raises nothing.
+
+    Args:
+        suite: The suite.
+        one: A check of it.
+        expected: Reasons, by name of the check, why it is known to fail.
+    """
+    started_s = time.perf_counter()
+    subject = suite.subject()
+    who = subject.registered.qualified_name
+
+    def finish(
+        status: CheckStatus, detail: str = "", error: BaseException | None = None
+    ) -> CheckResult:
+        return CheckResult(who, one.name, status, detail, time.perf_counter() - started_s, error)
+
+    if one.capability is not None and subject.capability(one.capability) is None:
+        return finish("skipped", f"does not declare {one.capability}")
+    reason = expected.get(one.name)
+    try:
+        run(suite, one, subject)
+    except (Exception, SystemExit) as error:  # a check of a stranger's code reports, never breaks
+        if reason is not None:
+            return finish("expected_failure", reason, error)
+        return finish("failed", described(error), error)
+    if reason is not None:
+        return finish("unexpected_pass", f"expected to fail: {reason}")
+    return finish("passed")
+
+
+def run(suite: ComponentChecks, one: Check, subject: Subject) -> None:
+    """Run one check and let what it raises pass."""
+    if not one.is_drawn:
+        one.body(suite, subject)
+        return
+    known = suite.strategies()
+    drawn = st.fixed_dictionaries({name: known[name] for name in one.drawn})
+
+    def on_example(
+        options: Mapping[str, object],
+        sections: Mapping[str, Mapping[str, object]],
+        values: Mapping[str, object],
+    ) -> None:
+        chosen = Subject(subject.registry, subject.registered, options, sections)
+        try:
+            one.body(suite, chosen, **{name: _settled(chosen, v) for name, v in values.items()})
+        except (ScenarioError, ModelScopeError):
+            reject()  # a component may say that an input is not for it
+
+    test = given(
+        options=suite.option_values(subject), sections=suite.section_values(subject), values=drawn
+    )(on_example)
+    steady_settings(suite.examples)(test)()
+
+
+def check_component(
+    kind: str,
+    name: str,
+    *,
+    registry: "Registry | None" = None,
+    expected_failures: Mapping[str, str] | None = None,
+) -> list[CheckResult]:
+    """Return the results of all checks of one component.
+
+    Args:
+        kind: One of the six kinds.
+        name: Bare or qualified name.
+        registry: Where it is registered, by default the process's own.
+        expected_failures: Reasons by check, on top of those that the component declares.
+
+    Raises:
+        UnknownComponentError: There is no such component.
+        ValueError: ``expected_failures`` names no check.
+    """
+    from ncsim_core.testing.suites import SUITES
+
+    members = {"component": name, "expected_failures": expected_failures or {}}
+    suite_class = cast("type[ComponentSuite]", type("AdHocSuite", (SUITES[kind],), members))
+    suite = suite_class()
+    suite.registry = registry
+    suite.subject()
+    return [suite.result(one) for one in suite.checks()]
+
+
+def described(error: BaseException) -> str:
+    """Return an error with hypothesis's falsifying example, for people."""
+    if isinstance(error, Unsatisfiable):
+        return "it refused every example that was tried"
+    text = str(error) if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}"
+    notes = [note for note in getattr(error, "__notes__", ()) if "Falsifying" in note]
+    return "\n".join([text, *notes])
+
+
+def _settled(subject: Subject, value: object) -> object:
+    return subject.settle(value) if isinstance(value, Case) else value
+
+
+def steady_settings(examples: int) -> settings:
+    """Return settings under which a run takes no notice of clocks, disks and earlier runs."""
+    return settings(
+        max_examples=examples,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate, Phase.shrink),
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+    )

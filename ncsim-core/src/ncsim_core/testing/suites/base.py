@@ -1,0 +1,265 @@
+"""What holds for components of every kind, and how a subclass becomes tests."""
+
+import inspect
+import pickle
+import random
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar, cast
+
+import pytest
+from hypothesis import strategies as st
+from hypothesis.strategies import SearchStrategy
+from typing_extensions import override
+
+from ncsim_core.errors import ScenarioError
+from ncsim_core.registry import Registry, get_registry
+from ncsim_core.registry.building import load_object
+from ncsim_core.registry.option_schemas import properties_of, schema_fault
+from ncsim_core.testing.builders import line, make_context
+from ncsim_core.testing.checking import PREFIX, Check, CheckResult, check, result_of
+from ncsim_core.testing.child import answers_in_new_process
+from ncsim_core.testing.option_strategies import options_for
+from ncsim_core.testing.questions import Answer, Case, fixed_cases
+from ncsim_core.testing.subject import Subject, default_sections
+
+
+class ComponentSuite:
+    """Checks of one component; subclass the suite of its kind and name the component.
+
+    Each ``check_<name>`` becomes ``test_<name>`` of every subclass that has a ``component``. A
+    check bound to a capability that the component does not declare is skipped, and says so.
+
+    Attributes:
+        component: Name in the registry, bare or ``distribution/name``.
+        options: Options to build it with; ``None`` draws them from its schema.
+        sections: Config sections to build it with; ``None`` takes their defaults.
+        examples: How many examples each check draws.
+        expected_failures: Reasons, by name of the check, why it is known to fail. Such a check
+            has to fail: once it passes, the entry must go.
+    """
+
+    kind: ClassVar[str]
+    component: ClassVar[str] = ""
+    options: ClassVar[Mapping[str, object] | None] = None
+    sections: ClassVar[Mapping[str, Mapping[str, object]] | None] = None
+    examples: int = 20
+    expected_failures: ClassVar[Mapping[str, str]] = {}
+
+    registry: Registry | None = None
+
+    @override
+    def __init_subclass__(cls) -> None:
+        """Turn the checks into fresh tests of this subclass.
+
+        Raises:
+            ValueError: ``expected_failures`` names something that is no check.
+        """
+        super().__init_subclass__()
+        checks = cls.checks()
+        unknown = set(cls.expected_failures) - {each.name for each in checks}
+        if unknown:
+            raise ValueError(f"{cls.__name__}.expected_failures: no checks {sorted(unknown)}")
+        if cls.component:
+            for each in checks:
+                setattr(cls, f"test_{each.name}", _test_of(each))
+
+    @classmethod
+    def checks(cls) -> tuple[Check, ...]:
+        """Return all checks of this suite, those for every kind first."""
+        found: dict[str, Check] = {}
+        for ancestor in reversed(cls.__mro__):
+            for name, value in vars(ancestor).items():
+                if name.startswith(PREFIX) and hasattr(value, "ncsim_check"):
+                    found[name] = value.ncsim_check
+        return tuple(found.values())
+
+    def result(self, one: Check) -> CheckResult:
+        """Return what comes of one check."""
+        declared = self.subject().component.expected_failures
+        return result_of(self, one, {**declared, **self.expected_failures})
+
+    def subject(self) -> Subject:
+        """Return the component with default options.
+
+        Raises:
+            UnknownComponentError: It is not registered.
+        """
+        registry = self.registry or get_registry()
+        sections = default_sections(registry) if self.sections is None else self.sections
+        registered = registry.find(self.kind, self.component)
+        return Subject(registry, registered, self.options or {}, sections)
+
+    def option_values(self, subject: Subject) -> SearchStrategy[Mapping[str, object]]:
+        """Return the options to draw."""
+        if self.options is not None:
+            return st.just(self.options)
+        return cast("SearchStrategy[Mapping[str, object]]", options_for(subject.registered.schema))
+
+    def section_values(
+        self, subject: Subject
+    ) -> SearchStrategy[Mapping[str, Mapping[str, object]]]:
+        """Return the config sections to draw; override it to vary them."""
+        return st.just(subject.sections)
+
+    def cases(self) -> SearchStrategy[Case]:
+        """Return the questions to draw."""
+        raise NotImplementedError
+
+    def strategies(self) -> Mapping[str, SearchStrategy[object]]:
+        """Return what each parameter of a check may be."""
+        return {"case": self.cases(), "other": self.cases()}
+
+    @check(is_drawn=False)
+    def check_schema_is_portable(self, subject: Subject) -> None:
+        """The options schema is valid draft-07 in the portable subset, all of it described."""
+        from jsonschema import Draft7Validator
+
+        schema = subject.registered.schema
+        fault = schema_fault(schema)
+        assert fault is None, fault
+        Draft7Validator.check_schema(schema)
+        bare = _undescribed(schema)
+        assert not bare, f"options without a description: {bare}"
+
+    @check(is_drawn=False)
+    def check_defaults_are_the_factorys(self, subject: Subject) -> None:
+        """Every option that may be left out has a valid default, equal to the factory's."""
+        from jsonschema import Draft7Validator
+
+        schema = subject.registered.schema
+        parameters = inspect.signature(_factory(subject)).parameters
+        for name, child in properties_of(schema).items():
+            if name in cast("Sequence[str]", schema.get("required", ())):
+                continue
+            assert "default" in child, f"option {name!r} may be left out and has no default"
+            Draft7Validator(child).validate(child["default"])
+            parameter = parameters.get(name)
+            if parameter is not None and parameter.default is not inspect.Parameter.empty:
+                assert parameter.default == child["default"], (
+                    f"option {name!r}: the schema says {child['default']!r}, "
+                    f"the factory {parameter.default!r}"
+                )
+
+    @check(is_drawn=False)
+    def check_factory_takes_every_option(self, subject: Subject) -> None:
+        """The factory accepts the context, its params and every option by name."""
+        options = dict.fromkeys(properties_of(subject.registered.schema))
+        params = subject.component.params
+        both = sorted(options.keys() & params.keys())
+        assert not both, f"options that are params as well: {both}"
+        context = make_context(line(2))
+        inspect.signature(_factory(subject)).bind(context, **params, **options)
+
+    @check(is_drawn=False)
+    def check_unknown_options_are_refused(self, subject: Subject) -> None:
+        """An option that is not in the schema is the user's error."""
+        name = subject.registered.qualified_name
+        with pytest.raises(ScenarioError, match="no_such_option"):
+            subject.registry.build(self.kind, name, {"no_such_option": 1}, make_context(line(2)))
+
+    @check()
+    def check_same_question_same_answer(self, subject: Subject, case: Case, other: Case) -> None:
+        """The answer is the same when asked again, after another question, and built anew."""
+        answer = self.fresh_answer(subject, case)
+        self.fresh_answer(subject, other)
+        assert self.fresh_answer(subject, case) == answer, "built anew, it answers otherwise"
+        if self.kind == "queue_model":
+            return
+        component = subject.build(case)
+        subject.ask(component, case)
+        assert subject.ask(component, case) == answer, "asked again, it answers otherwise"
+
+    @check()
+    def check_global_generators_stay_untouched(self, subject: Subject, case: Case) -> None:
+        """Neither ``random`` nor ``numpy.random`` is drawn from or seeded."""
+        import numpy as np
+
+        before, numpy_before = random.getstate(), pickle.dumps(np.random.get_state())
+        self.fresh_answer(subject, case)
+        assert random.getstate() == before, "the global generator of random was used"
+        numpy_after = pickle.dumps(np.random.get_state())
+        assert numpy_after == numpy_before, "the global generator of numpy was used"
+
+    @check()
+    def check_arguments_stay_unchanged(self, subject: Subject, case: Case) -> None:
+        """Neither the network nor anything else it is given is changed."""
+        before = pickle.dumps(_plain(case))
+        self.fresh_answer(subject, case)
+        assert pickle.dumps(_plain(case)) == before, "an argument was changed"
+
+    @check()
+    def check_pickled_copy_gives_same_answer(self, subject: Subject, case: Case) -> None:
+        """It can be sent to another process."""
+        component = subject.build(case)
+        copy = pickle.loads(pickle.dumps(component))
+        assert subject.ask(copy, case) == subject.ask(component, case), "the copy differs"
+
+    @check(is_drawn=False)
+    def check_hash_seed_changes_nothing(self, subject: Subject) -> None:
+        """A new process with another ``PYTHONHASHSEED`` gives the same answers."""
+        cases = [
+            case
+            for each in fixed_cases(self.kind)
+            for case in [subject.settle(each)]
+            if not _is_refused(self, subject, case)
+        ]
+        assert cases, "it refuses all ordinary questions"
+        here = [self.fresh_answer(subject, case) for case in cases]
+        assert answers_in_new_process(subject, cases) == here, "the hash seed decides"
+
+    def fresh_answer(self, subject: Subject, case: Case) -> Answer:
+        """Return the answer of a component built for this question alone."""
+        return subject.ask(subject.build(case), case)
+
+
+def _test_of(one: Check) -> Callable[[ComponentSuite], None]:
+    """Return a new test function for one check; hypothesis must not see one function twice."""
+
+    def test(self: ComponentSuite) -> None:
+        __tracebackhide__ = True
+        result = self.result(one)
+        if result.status == "skipped":
+            pytest.skip(result.detail)
+        if result.status == "expected_failure":
+            pytest.xfail(result.detail)
+        if result.status == "unexpected_pass":
+            pytest.fail(f"[XPASS(strict)] {result.detail}")
+        if result.error is not None:
+            raise result.error
+
+    test.__name__ = f"test_{one.name}"
+    test.__doc__ = one.body.__doc__
+    return test
+
+
+def _factory(subject: Subject) -> Callable[..., object]:
+    return cast("Callable[..., object]", load_object(subject.component.factory))
+
+
+def _is_refused(suite: ComponentSuite, subject: Subject, case: Case) -> bool:
+    try:
+        suite.fresh_answer(subject, case)
+    except ScenarioError:
+        return True
+    return False
+
+
+def _undescribed(schema: Mapping[str, object], where: str = "") -> list[str]:
+    """Return the properties without a description, those of objects inside included."""
+    bare: list[str] = []
+    for name, child in properties_of(schema).items():
+        here = f"{where}{name}"
+        if not child.get("description"):
+            bare.append(here)
+        bare += _undescribed(child, f"{here}.")
+    return bare
+
+
+def _plain(case: Case) -> object:
+    """Return everything of a case that a component could change, without lazily kept values."""
+    network, dag = case.network, case.dag
+    return (
+        (network.nodes, network.links, network.rates, dict(network.node_index)),
+        dag and (dag.id, dag.tasks, dag.dependencies, dict(dag.task_index)),
+        case.injections,
+    )

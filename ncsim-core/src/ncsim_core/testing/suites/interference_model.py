@@ -1,0 +1,173 @@
+"""Properties of interference models; the engine's local refresh stands on several of them."""
+
+from collections.abc import Iterator, Sequence
+from typing import cast
+
+from hypothesis.strategies import SearchStrategy
+from typing_extensions import override
+
+from ncsim_core.contracts.interference_model import (
+    InterferenceModel,
+    InterferenceSession,
+    PlainSession,
+)
+from ncsim_core.network import LinkIndex
+from ncsim_core.testing import strategies
+from ncsim_core.testing.checking import check
+from ncsim_core.testing.questions import Case
+from ncsim_core.testing.subject import Subject
+from ncsim_core.testing.suites.base import ComponentSuite
+
+
+class InterferenceModelSuite(ComponentSuite):
+    """Checks of an interference model. Equal means equal: to the last bit."""
+
+    kind = "interference_model"
+
+    @override
+    def cases(self) -> SearchStrategy[Case]:
+        return strategies.traffic()
+
+    @check()
+    def check_factors_are_shares(self, subject: Subject, case: Case) -> None:
+        """There is one factor per link asked for, in [0, 1]."""
+        factors = _model(subject, case).factors(case.active, case.active)
+        assert factors.shape == (len(case.active),), f"shape {factors.shape}"
+        for link, factor in zip(case.active, factors.tolist(), strict=True):
+            assert 0.0 <= factor <= 1.0, f"link {link} has factor {factor!r}"  # false for nan too
+
+    @check()
+    def check_alone_a_link_keeps_its_bandwidth(self, subject: Subject, case: Case) -> None:
+        """The factor of a link that is alone is 1."""
+        model = _model(subject, case)
+        for link in range(len(case.network.links)):
+            assert _factors(model, [link], [link]) == [1.0], f"link {link}"
+
+    @check()
+    def check_order_of_links_changes_nothing(self, subject: Subject, case: Case) -> None:
+        """Factors depend on the set of active links, not on how it is listed."""
+        model = _model(subject, case)
+        backwards = case.active[::-1]
+        expected = _factors(model, case.active, case.active)
+        assert _factors(model, case.active, backwards) == expected
+        assert _factors(model, backwards, set(case.active)) == expected[::-1]
+
+    @check()
+    def check_asking_for_fewer_changes_nothing(self, subject: Subject, case: Case) -> None:
+        """A link has the same factor whether asked for alone or with others."""
+        model = _model(subject, case)
+        together = _factors(model, case.active, case.active)
+        assert [_factors(model, [link], case.active)[0] for link in case.active] == together
+
+    @check()
+    def check_reach_holds_what_changed(self, subject: Subject, case: Case) -> None:
+        """The links that change are in reach of themselves."""
+        reach = set(_model(subject, case).reach(case.active))
+        assert reach >= set(case.active), f"reach({case.active}) is {sorted(reach)}"
+        assert reach <= set(range(len(case.network.links))), f"no such links: {sorted(reach)}"
+
+    @check()
+    def check_out_of_reach_nothing_changes(self, subject: Subject, case: Case) -> None:
+        """Switching a link moves no factor outside its reach."""
+        model = _model(subject, case)
+        for switched in range(len(case.network.links)):
+            rest = [link for link in case.active if link != switched]
+            far = [link for link in rest if link not in set(model.reach([switched]))]
+            without = _factors(model, far, rest)
+            assert _factors(model, far, [*rest, switched]) == without, f"links {far}, {switched}"
+
+    @check()
+    def check_session_equals_global_refresh(self, subject: Subject, case: Case) -> None:
+        """A session gives what asking for every active link after every change gives."""
+        model = _model(subject, case)
+        session = _Followed(model.open_session())
+        slow = _Followed(PlainSession(model, is_global=True))
+        for on, off in _switches(case):
+            expected = slow.update(on, off)
+            assert session.update(on, off) == expected, f"after {on} on, {off} off"
+            links = sorted(expected)
+            told = list(session.session.competition(links))
+            assert told == list(model.competition(links, links)), f"competition of {links}"
+
+    @check()
+    def check_sessions_do_not_meet(self, subject: Subject, case: Case) -> None:
+        """Two sessions of one model know nothing of each other."""
+        model = _model(subject, case)
+        first, second = _Followed(model.open_session()), _Followed(model.open_session())
+        alone = _Followed(model.open_session())
+        steps = list(_switches(case))
+        ends = [alone.update(on, off) for on, off in steps]
+        assert [first.update(*steps[0]) for _ in steps[:1]] == ends[:1]
+        assert [second.update(on, off) for on, off in steps] == ends
+        assert [first.update(on, off) for on, off in steps[1:]] == ends[1:]
+
+    @check()
+    def check_competition_can_be_explained(self, subject: Subject, case: Case) -> None:
+        """Each link has counts of 0 or more and a hidden factor in [0, 1]."""
+        told = _model(subject, case).competition(case.active, case.active)
+        assert len(told) == len(case.active)
+        for each in told:
+            assert each.contenders >= 0, each
+            assert each.hidden_interferers >= 0, each
+            assert 0.0 <= each.hidden_factor <= 1.0, each
+
+    @check(capability="monotone")
+    def check_one_more_link_never_helps(self, subject: Subject, case: Case) -> None:
+        """Switching one more link on raises no factor."""
+        model = _model(subject, case)
+        before = _factors(model, case.active, case.active)
+        for extra in set(range(len(case.network.links))) - set(case.active):
+            after = _factors(model, case.active, [*case.active, extra])
+            better = [
+                k for k, pair in enumerate(zip(before, after, strict=True)) if pair[1] > pair[0]
+            ]
+            assert not better, f"link {extra} raises the factors of {better}"
+
+
+class _Followed:
+    """A session and the factors that follow from what it said."""
+
+    def __init__(self, session: InterferenceSession) -> None:
+        self.session = session
+        self._factors: dict[LinkIndex, float] = {}
+
+    def update(self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]) -> dict[LinkIndex, float]:
+        """Return all factors after a change."""
+        for link in off:
+            del self._factors[link]
+        self._factors.update(dict.fromkeys(on, 1.0))
+        links, factors = self.session.update(on, off)
+        assert set(links) <= self._factors.keys(), f"{links} are not all active"
+        self._factors.update(zip(links, map(float, factors), strict=True))
+        return dict(self._factors)
+
+
+def _switches(case: Case) -> Iterator[tuple[list[LinkIndex], list[LinkIndex]]]:
+    """Yield what to switch on and off, step by step: first all active links, then each toggle.
+
+    Every third toggle goes together with the one before it, as transfers of several links do.
+    """
+    active = set(case.active)
+    yield list(case.active), []
+    waiting: list[LinkIndex] = []
+    for number, link in enumerate(case.toggles):
+        waiting = [*waiting, link] if link not in waiting else waiting
+        if number % 3 != 1:
+            on = [each for each in waiting if each not in active]
+            off = [each for each in waiting if each in active]
+            active = (active | set(on)) - set(off)
+            waiting = []
+            yield on, off
+
+
+def _model(subject: Subject, case: Case) -> InterferenceModel:
+    return cast("InterferenceModel", subject.build(case))
+
+
+def _factors(
+    model: InterferenceModel,
+    links: Sequence[LinkIndex],
+    active: Sequence[LinkIndex] | set[LinkIndex],
+) -> list[float]:
+    """Return factors as numbers; nobody is asked about no links."""
+    return [float(each) for each in model.factors(links, active)] if links else []
