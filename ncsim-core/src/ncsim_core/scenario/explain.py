@@ -1,8 +1,10 @@
 """Schema errors in the words of the user: what is wrong, and what was probably meant."""
 
 import difflib
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import islice
 from typing import Any, TypeAlias
 
 from ncsim_core.errors import PluginError
@@ -16,6 +18,10 @@ Finding: TypeAlias = Any
 """A ``jsonschema.ValidationError``, whose fields depend on the keyword that failed."""
 
 KIND_BY_CONFIG_KEY = {kind.config_key: kind.name for kind in KINDS.values()}
+
+CONFIG: Path = ("scenario", "config")
+MAX_FINDINGS = 1000
+"""Departures from the schema that are explained; each costs a millisecond."""
 
 _TYPE_WORDS = {
     "object": "a mapping",
@@ -39,12 +45,32 @@ def schema_problems(document: object, registry: Registry) -> list[Problem]:
     """Return everything in which ``document`` departs from the composed schema."""
     schema = compose_schema(registry)
     if plain_fit(schema)(document):
-        return []
+        # Of what fits plainly, only free-form options could still hide an infinite number.
+        return list(_number_problems(document["scenario"].get("config"), CONFIG))
     problems: dict[tuple[Path, str], Problem] = {}
-    for error in _flat(_findings(document, schema)):
+    findings = list(islice(_flat(_findings(document, schema)), MAX_FINDINGS))
+    for error in findings:
         for problem in _problems_of(error, registry):
             problems.setdefault((problem.path, problem.message), problem)
-    return _without_echoes(list(problems.values()))
+    if len(findings) == MAX_FINDINGS:
+        message = f"has {MAX_FINDINGS} faults or more; only that many are listed"
+        problems[(), message] = Problem((), message)
+    return [*_without_echoes(list(problems.values())), *_number_problems(document)]
+
+
+def _number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:
+    """Yield every number that is infinite or not a number; JSON Schema lets them pass."""
+    waiting: list[tuple[Path, Data]] = [(root, document)]
+    while waiting:
+        path, value = waiting.pop()
+        children: Iterable[tuple[str | int, Data]] = ()
+        if isinstance(value, dict):
+            children = value.items()
+        elif isinstance(value, list):
+            children = enumerate(value)
+        elif isinstance(value, float) and not math.isfinite(value):
+            yield Problem(path, f"must be a finite number, not {value}", str(value))
+        waiting += [((*path, step), child) for step, child in children]
 
 
 def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:
@@ -102,7 +128,7 @@ def _problems_of(error: Finding, registry: Registry) -> Iterable[Problem]:
 
 def _component_kind(path: Path) -> str | None:
     """Return the kind whose component name stands at ``path``, if one does."""
-    if path[:2] != ("scenario", "config") or len(path) not in (3, 4):
+    if path[:2] != CONFIG or len(path) not in (3, 4):
         return None
     if len(path) == 4 and path[3] != "type":  # noqa: PLR2004 - config, kind, type
         return None

@@ -11,7 +11,7 @@ from typing import Any
 from ncsim_core.errors import PluginError
 from ncsim_core.network import Link, LinkId, Network, Node, NodeId, Position
 from ncsim_core.registry import Registry, get_registry
-from ncsim_core.scenario.explain import schema_problems
+from ncsim_core.scenario.explain import CONFIG, schema_problems
 from ncsim_core.scenario.faults import Data, Problem, shown
 from ncsim_core.scenario.model import Config, Scenario
 from ncsim_core.scenario.overrides import override_path, with_overrides
@@ -22,13 +22,10 @@ from ncsim_core.scenario.semantics import (
     config_problems,
     dag_problems,
     network_problems,
-    number_problems,
 )
 from ncsim_core.scenario.source import Origins, Source, located, read_document, read_source
 from ncsim_core.units import us_from_s
 from ncsim_core.workflow import DAG, DagId, Dependency, Injection, Task, TaskId
-
-_CONFIG = ("scenario", "config")
 
 
 def load_scenario(
@@ -112,7 +109,6 @@ def _loaded(document: Data, slips: list[Slip], source: Source, loading: _Loading
 def _shape_problems(document: Data, registry: Registry) -> list[Problem]:
     return [
         *schema_problems(document, registry),
-        *number_problems(document),
         *network_problems(document),
         *dag_problems(document),
     ]
@@ -122,7 +118,7 @@ def _config(document: Data, problems: list[Problem], registry: Registry) -> Conf
     """Return the resolved config, adding to ``problems`` what goes wrong on the way."""
     scenario = document.get("scenario")
     is_readable = isinstance(scenario, dict) and isinstance(scenario.get("config", {}), dict)
-    if not is_readable or any(each.path[:2] == _CONFIG for each in problems):
+    if not is_readable or any(each.path[:2] == CONFIG for each in problems):
         return None
     dags = scenario.get("dags")
     dag_count = len(dags) if isinstance(dags, list) else 1
@@ -132,7 +128,7 @@ def _config(document: Data, problems: list[Problem], registry: Registry) -> Conf
         problems.append(undecided.problem)
         return None
     except PluginError as error:
-        problems.append(Problem(_CONFIG, str(error)))
+        problems.append(Problem(CONFIG, str(error)))
         return None
     problems += config_problems(document, config, registry)
     return config

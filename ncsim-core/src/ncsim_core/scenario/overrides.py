@@ -5,7 +5,7 @@ from typing import Any
 
 from ncsim_core.plugins import KINDS
 from ncsim_core.registry import Registry
-from ncsim_core.scenario.explain import KIND_BY_CONFIG_KEY
+from ncsim_core.scenario.explain import CONFIG, KIND_BY_CONFIG_KEY
 from ncsim_core.scenario.faults import Data, Path
 from ncsim_core.scenario.resolution import component_name, default_name, wants_radio
 
@@ -15,7 +15,7 @@ _INTERFERENCE = KINDS["interference_model"].config_key
 
 def override_path(dotted: str) -> Path:
     """Return where a dotted override such as ``rf.tx_power_dBm`` points in a document."""
-    return ("scenario", "config", *dotted.split("."))
+    return (*CONFIG, *dotted.split("."))
 
 
 def with_overrides(document: Data, overrides: Mapping[str, object], registry: Registry) -> Data:

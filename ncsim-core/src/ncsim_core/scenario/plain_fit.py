@@ -1,11 +1,12 @@
 """Says in microseconds whether data plainly fits a schema.
 
-A "yes" is certain; a "no" only means that jsonschema has to be asked, which knows every
+A "yes" is certain, and means that all numbers are finite; a "no" only means that jsonschema has to be asked, which knows every
 keyword and can explain. A good scenario of any size is thus accepted without importing jsonschema.
 """
 
 import re
 from collections.abc import Callable, Mapping
+from math import isfinite
 from typing import Any, TypeAlias
 
 from ncsim_core.scenario.faults import Data
@@ -57,7 +58,7 @@ def _keyword_check(
 def _type_check(names: str | list[str]) -> Check:
     listed = [names] if isinstance(names, str) else names
     accepted = {exact for name in listed for exact in _TYPES[name]}
-    return lambda data: type(data) in accepted
+    return lambda data: type(data) in accepted and (type(data) is not float or isfinite(data))
 
 
 def _enum_check(choices: list[Any]) -> Check:

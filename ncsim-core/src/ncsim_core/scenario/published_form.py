@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ncsim_core.registry import Registry
+from ncsim_core.scenario.explain import CONFIG
 from ncsim_core.scenario.faults import Data, Path, Problem
 from ncsim_core.scenario.resolution import component_name, default_name
 
@@ -41,7 +42,6 @@ PUBLISHED_KEYS = ("scheduler_options", "hidden_terminal_model", "interference_ra
 _WIFI, _BIANCHI, _PROXIMITY = "wifi", "csma_bianchi", "proximity"
 _NEED_POSITIONS = frozenset({_PROXIMITY, _BIANCHI, "csma_clique", *MODES})
 _ROOT_KEYS = frozenset({"network", "dags"})
-_CONFIG: Path = ("scenario", "config")
 _ID_KEYS = ("id", "from", "to", "pinned_to")
 
 
@@ -182,13 +182,13 @@ class _Work:
         old = self._config.get("link_model")
         if component_name(old) not in (None, _WIFI):
             message = f"{mode} is link model {_WIFI} with rate {rate}; leave link_model out"
-            self._problems.append(Problem((*_CONFIG, "interference"), message, mode))
+            self._problems.append(Problem((*CONFIG, "interference"), message, mode))
             return
         options = old.get("options", {}) if isinstance(old, dict) else {}
         self._config["link_model"] = {"type": _WIFI, "options": {**options, "rate": rate}}
         self._config["interference"] = interference
         if old is None:
-            self._moved[(*_CONFIG, "link_model")] = (*_CONFIG, "interference")
+            self._moved[(*CONFIG, "link_model")] = (*CONFIG, "interference")
         self._notes.append(
             f"config.interference: {mode} is read as link_model {_WIFI} (rate: {rate}) "
             f"with interference {interference}"
@@ -204,8 +204,8 @@ class _Work:
         inner = row.get("options", {}) if isinstance(row, dict) else {}
         self._config["scheduler"] = {"type": name, "options": {**flat, **inner}}
         for key in flat.keys() - inner.keys():
-            new = (*_CONFIG, "scheduler", "options", key)
-            self._moved[new] = (*_CONFIG, "scheduler_options", key)
+            new = (*CONFIG, "scheduler", "options", key)
+            self._moved[new] = (*CONFIG, "scheduler_options", key)
         self._notes.append(f"config.scheduler_options is read as the options of scheduler {name}")
 
     def _translate_option(self, key: str, owner: str, option: str) -> None:
@@ -220,7 +220,7 @@ class _Work:
             return
         inner = row.get("options", {}) if isinstance(row, dict) else {}
         self._config["interference"] = {"type": owner, "options": {option: value, **inner}}
-        self._moved[(*_CONFIG, "interference", "options", option)] = (*_CONFIG, key)
+        self._moved[(*CONFIG, "interference", "options", option)] = (*CONFIG, key)
         self._notes.append(f"config.{key} is read as option {option} of interference {owner}")
 
 

@@ -1,10 +1,9 @@
-"""What no schema can say: unique ids, ends that exist, DAGs without cycles, finite numbers.
+"""What no schema can say: unique ids, ends that exist, DAGs without cycles, models that are fed.
 
 All checks work on plain rows and pass over what the schema has already refused, so that one
 mistake is reported once, and all mistakes at once.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
@@ -18,25 +17,6 @@ from ncsim_core.scenario.model import Config
 from ncsim_core.scenario.resolution import RADIO
 
 Row: TypeAlias = Mapping[str, Any]
-
-
-def number_problems(document: object) -> Iterator[Problem]:
-    """Yield every number that is infinite or not a number, wherever it stands."""
-    waiting: list[tuple[Path, Any]] = [((), document)]
-    while waiting:
-        path, value = waiting.pop()
-        children: Any = ()
-        if isinstance(value, dict):
-            children = value.items()
-        elif isinstance(value, list):
-            children = enumerate(value)
-        elif isinstance(value, float) and not math.isfinite(value):
-            yield Problem(path, f"must be a finite number, not {value}", str(value))
-        waiting += [
-            ((*path, step), child)
-            for step, child in children
-            if isinstance(child, dict | list | float)
-        ]
 
 
 def network_problems(scenario: Row) -> Iterator[Problem]:

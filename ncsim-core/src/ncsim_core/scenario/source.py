@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -29,6 +30,10 @@ class Source:
     text: str = ""
     is_json: bool = False
 
+    @cached_property
+    def _lines(self) -> list[str]:
+        return self.text.splitlines()
+
     def lone_fault(self, message: str, span: Span | None = None) -> ScenarioFaults:
         """Return the error for a source with one fault that leaves nothing to check."""
         return ScenarioFaults([self.fault("", span, message)])
@@ -45,12 +50,11 @@ class Source:
         fault = Fault(path, None, None, message, value, suggestion, origin=self.name)
         if span is None:
             return fault
-        lines = self.text.splitlines()
         return replace(
             fault,
             line=span.line,
             column=span.column,
-            line_text=lines[span.line - 1] if span.line <= len(lines) else "",
+            line_text=self._lines[span.line - 1] if span.line <= len(self._lines) else "",
             length=span.length,
         )
 

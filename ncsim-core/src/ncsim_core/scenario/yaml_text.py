@@ -7,19 +7,16 @@ YAML 1.1, which PyYAML implements, reads ``12:30`` as 750, ``017`` as 15, ``yes`
 
 import math
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import yaml
 
-NULL_WORDS = frozenset({"", "~", "null", "Null", "NULL"})
-BOOLEAN_WORDS = {
-    "true": True,
-    "True": True,
-    "TRUE": True,
-    "false": False,
-    "False": False,
-    "FALSE": False,
+CONSTANTS: Mapping[str, bool | None] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
 }
 INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*)\Z")
 NUMBER = re.compile(r"[-+]?(?:\.[0-9]+|(?:0|[1-9][0-9]*)(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?\Z")
@@ -28,7 +25,7 @@ NOT_A_NUMBER = re.compile(r"\.(?:nan|NaN|NAN)\Z")
 MAX_INTEGER_DIGITS = 300
 """Longer integers are beyond any float, and read as infinite."""
 
-_FIRST_CHARACTERS = frozenset("0123456789+-.~nNtTfF")
+_FIRST_OF_A_NUMBER = frozenset("0123456789+-.")
 
 
 def plain_value(word: str) -> str | int | float | bool | None:
@@ -37,12 +34,10 @@ def plain_value(word: str) -> str | int | float | bool | None:
     >>> [plain_value(word) for word in ("5e9", "7", "yes", "12:30", "017", "true", "~")]
     [5000000000.0, 7, 'yes', '12:30', '017', True, None]
     """
-    if word and word[0] not in _FIRST_CHARACTERS:
+    if word in CONSTANTS:
+        return CONSTANTS[word]
+    if word[0] not in _FIRST_OF_A_NUMBER:
         return word
-    if word in NULL_WORDS:
-        return None
-    if word in BOOLEAN_WORDS:
-        return BOOLEAN_WORDS[word]
     number = _number(word)
     return word if number is None else number
 
