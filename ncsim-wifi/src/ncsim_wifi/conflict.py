@@ -1,11 +1,11 @@
 """Who may not send together, and who disturbs whom unheard: the static relations of links.
 
-Both relations are kept as neighbour lists, because in a large network most links are far
-apart. They are built in blocks of rows, so that memory stays proportional to the answer.
+Relations are kept as neighbour lists, because in a large network most links are far apart, and
+built in blocks of rows, so that memory stays in proportion to the answer.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -18,86 +18,87 @@ from ncsim_wifi.propagation import is_on_air, propagation
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
 from ncsim_wifi.radio import Radio
 
-CELLS_PER_BLOCK = 1 << 21  # about 2 MB per boolean array while building
+CELLS_PER_BLOCK = 1 << 20  # about 1 MB per boolean array while building
 
 LinkArray = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
-class Neighbours:
-    """For each link a list of others: row ``i`` is ``links[starts[i]:starts[i + 1]]``.
+class Relations:
+    """Which links affect which: conflict graph and hidden interference of one network.
+
+    Row ``i`` holds the links that are affected when link ``i`` is active, ascending:
+    ``links[starts[i]:starts[i + 1]]``, and so on for the other arrays.
 
     Args:
         starts: Where rows begin, shape ``(links + 1,)``.
-        links: The neighbours, ascending within a row.
+        links: The affected links. They are in the conflict neighbourhood N of ``i``, or
+            outside it with a receiver that hears the transmitter of ``i`` at the
+            cutoff or above.
+        is_conflict: Which of the two; conflicts are mutual.
+        power_mW: Received power of ``i`` at the other's receiver.
     """
 
     starts: IntArray
     links: LinkArray
-
-    def row(self, link: LinkIndex) -> slice:
-        """Return where the neighbours of a link are kept."""
-        return slice(int(self.starts[link]), int(self.starts[link + 1]))
-
-    def of(self, link: LinkIndex) -> LinkArray:
-        """Return the neighbours of a link."""
-        return self.links[self.row(link)]
-
-    @property
-    def link_count(self) -> int:
-        """Return how many links have a row, possibly empty."""
-        return len(self.starts) - 1
-
-    @classmethod
-    def none(cls, link_count: int) -> "Neighbours":
-        """Return the relation in which no link has a neighbour."""
-        return cls(np.zeros(link_count + 1, np.int64), np.zeros(0, np.int32))
-
-
-@dataclass(frozen=True)
-class Relations:
-    """Conflict graph and hidden interference of one network.
-
-    Args:
-        conflicts: The conflict neighbourhood N of each link; symmetric.
-        victims: For each link, the links outside its neighbourhood whose receivers hear its
-            transmitter at the cutoff or above.
-        victim_power_mW: With what power, one entry per entry of ``victims.links``.
-    """
-
-    conflicts: Neighbours
-    victims: Neighbours
-    victim_power_mW: FloatArray
+    is_conflict: BoolArray
+    power_mW: FloatArray
 
     @property
     def link_count(self) -> int:
         """Return the number of links, wired ones included."""
-        return self.conflicts.link_count
+        return len(self.starts) - 1
+
+    def row(self, link: LinkIndex) -> slice:
+        """Return where the links affected by one are kept."""
+        return slice(int(self.starts[link]), int(self.starts[link + 1]))
+
+    def affected(self, link: LinkIndex) -> LinkArray:
+        """Return the links affected by one."""
+        return self.links[self.row(link)]
+
+    def conflicts(self, link: LinkIndex) -> LinkArray:
+        """Return the conflict neighbourhood N of a link."""
+        row = self.row(link)
+        return self.links[row][self.is_conflict[row]]
 
     @cached_property
-    def interferers(self) -> Neighbours:
-        """Return for each link the links that it is a victim of: ``victims`` turned round."""
-        by_victim = np.argsort(self.victims.links, kind="stable")
-        origins = np.repeat(np.arange(self.link_count), np.diff(self.victims.starts))
-        counts = np.bincount(self.victims.links, minlength=self.link_count)
-        return Neighbours(
-            np.concatenate([[0], np.cumsum(counts)]), origins[by_victim].astype(np.int32)
+    def conflict_counts(self) -> IntArray:
+        """Return the degree of each link in the conflict graph."""
+        return np.bincount(self.origins[self.is_conflict], minlength=self.link_count)
+
+    @cached_property
+    def origins(self) -> LinkArray:
+        """Return the row of each entry."""
+        rows = np.arange(self.link_count, dtype=np.int32)
+        return np.repeat(rows, np.diff(self.starts))
+
+    @cached_property
+    def _turned_round(self) -> tuple[IntArray, LinkArray]:
+        by_affected = np.argsort(self.links, kind="stable")
+        counts = np.bincount(self.links, minlength=self.link_count)
+        return np.concatenate([[0], np.cumsum(counts)]), self.origins[by_affected]
+
+    def affecting(self, link: LinkIndex) -> LinkArray:
+        """Return the links that affect one."""
+        starts, origins = self._turned_round
+        return origins[starts[link] : starts[link + 1]]
+
+    def where(self, is_kept: BoolArray) -> "Relations":
+        """Return the relations with some entries only."""
+        kept_before = np.concatenate([[0], np.cumsum(is_kept)])
+        return Relations(
+            kept_before[self.starts],
+            self.links[is_kept],
+            self.is_conflict[is_kept],
+            self.power_mW[is_kept],
         )
-
-    def without_hidden(self) -> "Relations":
-        """Return the relations of a world without hidden interference."""
-        return replace(self, victims=Neighbours.none(self.link_count), victim_power_mW=np.zeros(0))
-
-    def without_contention(self) -> "Relations":
-        """Return the relations with hidden interference alone."""
-        return replace(self, conflicts=Neighbours.none(self.link_count))
 
 
 def relations(context: BuildContext, radio: Radio) -> Relations:
     """Return the relations of a network, worked out once per network and radio."""
-    seed = context.seed if radio.shadow_fading_sigma > 0 else None
     return context.cached(
-        ("ncsim_wifi.relations", radio, seed),
+        ("ncsim_wifi.relations", radio, radio.draws_from(context.seed)),
         lambda: relations_of(context.network, propagation(context, radio).power_dBm, radio),
     )
 
@@ -116,20 +117,24 @@ def relations_of(network: Network, power_dBm: FloatArray, radio: Radio) -> Relat
     ends = LinkEnds(np.array(network.sources)[on_air], np.array(network.targets)[on_air])
     hears = hearing(power_dBm, radio)
     is_audible = power_dBm >= radio.interference_cutoff_dBm
-    conflicts, victims, powers_mW = _RowCollector(on_air), _RowCollector(on_air), [np.zeros(0)]
+    power_mW = mW_from_dBm(power_dBm)
+    row_lengths = np.zeros(len(network.links) + 1, np.int64)
+    columns, conflicts, powers_mW = [on_air[:0]], [np.zeros(0, np.bool_)], [np.zeros(0)]
     for block in _blocks(len(on_air)):
         in_conflict = conflict_block(block, ends, hears, rts_cts=radio.rts_cts)
-        hidden = is_audible[ends.sources[block]][:, ends.targets] & ~in_conflict
+        is_related = is_audible[ends.sources[block]][:, ends.targets] | in_conflict
         own = np.arange(block.start, block.stop)
-        in_conflict[own - block.start, own] = False
-        hidden[own - block.start, own] = False
-        conflicts.add(block, *np.nonzero(in_conflict))
-        rows, columns = np.nonzero(hidden)
-        victims.add(block, rows, columns)
-        powers_mW.append(mW_from_dBm(power_dBm[ends.sources[block][rows], ends.targets[columns]]))
-    count = len(network.links)
+        is_related[own - block.start, own] = False  # no link is its own neighbour
+        rows, others = np.nonzero(is_related)
+        row_lengths[on_air[block] + 1] = np.count_nonzero(is_related, axis=1)
+        columns.append(others)
+        conflicts.append(in_conflict[is_related])
+        powers_mW.append(power_mW[ends.sources[block][rows], ends.targets[others]])
     return Relations(
-        conflicts.neighbours(count), victims.neighbours(count), np.concatenate(powers_mW)
+        np.cumsum(row_lengths),
+        on_air[np.concatenate(columns)].astype(np.int32),
+        np.concatenate(conflicts),
+        np.concatenate(powers_mW),
     )
 
 
@@ -166,30 +171,6 @@ def conflict_block(block: slice, ends: LinkEnds, hears: BoolArray, *, rts_cts: b
     else:
         in_conflict |= ends.targets[block][:, None] == ends.targets[None, :]
     return in_conflict
-
-
-class _RowCollector:
-    """Gathers neighbour lists block by block.
-
-    Args:
-        on_air: Index in the network of each link that the blocks count.
-    """
-
-    def __init__(self, on_air: IntArray) -> None:
-        self._on_air = on_air
-        self._row_lengths = np.zeros(len(on_air), np.int64)
-        self._columns: list[LinkArray] = [np.zeros(0, np.int32)]
-
-    def add(self, block: slice, rows: IntArray, columns: IntArray) -> None:
-        """Take the neighbours of a block; ``rows`` ascends and counts from the block's start."""
-        self._row_lengths[block] = np.bincount(rows, minlength=block.stop - block.start)
-        self._columns.append(self._on_air[columns].astype(np.int32))
-
-    def neighbours(self, link_count: int) -> Neighbours:
-        """Return the lists by index in the network; a link off the air has an empty one."""
-        starts = np.zeros(link_count + 1, np.int64)
-        starts[self._on_air + 1] = self._row_lengths
-        return Neighbours(np.cumsum(starts), np.concatenate(self._columns))
 
 
 def _blocks(row_count: int) -> Iterator[slice]:

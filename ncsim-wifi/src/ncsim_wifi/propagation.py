@@ -35,9 +35,8 @@ class Propagation:
 
 def propagation(context: BuildContext, radio: Radio) -> Propagation:
     """Return what the radios of a network receive, worked out once per network and radio."""
-    seed = context.seed if radio.shadow_fading_sigma > 0 else None
     return context.cached(
-        ("ncsim_wifi.propagation", radio, seed),
+        ("ncsim_wifi.propagation", radio, radio.draws_from(context.seed)),
         lambda: _propagation(context.network, radio, context.seed),
     )
 

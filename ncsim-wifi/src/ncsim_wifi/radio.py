@@ -49,3 +49,7 @@ class Radio:
     def rate_scale(self) -> float:
         """Return by how much this channel width multiplies the rates of the table."""
         return self.channel_width_mhz / REFERENCE_CHANNEL_WIDTH_mhz
+
+    def draws_from(self, seed: int) -> int | None:
+        """Return the seed if results depend on it, for keys of caches."""
+        return seed if self.shadow_fading_sigma > 0 else None

@@ -7,10 +7,11 @@ from ncsim_core.contracts.interference_model import InterferenceModel
 
 from ncsim_wifi.conflict import Relations, relations
 from ncsim_wifi.interference_models.effective_rate import EffectiveRateModel
+from ncsim_wifi.levels import levels_of
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.propagation import is_on_air, propagation, require_positions
 from ncsim_wifi.radio import Radio
-from ncsim_wifi.service import Shares, levels_of
+from ncsim_wifi.shares import Shares
 
 HiddenModel: TypeAlias = Literal["effective_rate", "fixed_capture"]
 Components: TypeAlias = Literal["combined", "contention_only", "hidden_only"]
@@ -38,7 +39,7 @@ def csma_bianchi(
         ModelScopeError: ``fixed_capture`` does not cover these radio parameters.
     """
     radio = Radio.from_section(context.section("rf"))
-    seed = context.seed if radio.shadow_fading_sigma > 0 else None
+    seed = radio.draws_from(context.seed)
     key = ("ncsim_wifi.csma_bianchi", radio, seed, hidden_model, components, outage_floor_factor)
     return context.cached(key, lambda: _build(context, radio, components, outage_floor_factor))
 
@@ -50,7 +51,7 @@ def _build(
     on_air = [index for index, link in enumerate(network.links) if is_on_air(link)]
     require_positions(network, on_air, "interference csma_bianchi")
     related = _ablated(relations(context, radio), components)
-    levels = levels_of(propagation(context, radio), related, radio)
+    levels = levels_of(propagation(context, radio), radio)
     shares = Shares(AxTiming(radio.rts_cts), outage_floor_factor)
     return EffectiveRateModel(related, levels, shares)
 
@@ -60,6 +61,6 @@ def _ablated(related: Relations, components: Components) -> Relations:
         case "combined":
             return related
         case "contention_only":
-            return related.without_hidden()
+            return related.where(related.is_conflict)
         case "hidden_only":
-            return related.without_contention()
+            return related.where(~related.is_conflict)

@@ -9,17 +9,20 @@ from ncsim_core.contracts.interference_model import (
     Competition,
     InterferenceModel,
     InterferenceSession,
+    PlainSession,
 )
 from ncsim_core.network import LinkIndex
 from typing_extensions import override
 
 from ncsim_wifi.conflict import Relations
-from ncsim_wifi.interference_models.matrix_session import MatrixSession
-from ncsim_wifi.interference_models.row_session import RowSession, influence_rows
+from ncsim_wifi.influence import Influence, influence_of
+from ncsim_wifi.interference_models.array_session import ArraySession
+from ncsim_wifi.interference_models.row_session import RowSession
+from ncsim_wifi.levels import Levels
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.service import Levels, Shares
+from ncsim_wifi.shares import Shares
 
-MAX_LINKS_OF_ROW_SESSION = 200  # measured: see benchmarks/wifi_precomputation.py
+MAX_LINKS_OF_ROW_SESSION = 150  # above, arrays are faster; see benchmarks/wifi_precomputation.py
 
 
 @dataclass(frozen=True)
@@ -39,16 +42,15 @@ class Tally:
 
 def tally(active: Collection[LinkIndex], related: Relations, levels: Levels) -> Tally:
     """Return what a set of active links does to every link; whole numbers, so in any order."""
-    contenders, interferers, hidden_units = (
-        np.zeros(related.link_count, np.int64) for _ in range(3)
-    )
+    counts = Tally(*(np.zeros(related.link_count, np.int64) for _ in range(3)))
     for link in active:
-        contenders[related.conflicts.of(link)] += 1
-        row = related.victims.row(link)
-        victims = related.victims.links[row]
-        interferers[victims] += 1
-        hidden_units[victims] += levels.victim_units[row]
-    return Tally(contenders, interferers, hidden_units)
+        row = related.row(link)
+        affected, is_hidden = related.links[row], ~related.is_conflict[row]
+        victims = affected[is_hidden]
+        counts.contenders[affected[~is_hidden]] += 1
+        counts.interferers[victims] += 1
+        counts.hidden_units[victims] += levels.units(victims, related.power_mW[row][is_hidden])
+    return counts
 
 
 class EffectiveRateModel(InterferenceModel):
@@ -76,12 +78,16 @@ class EffectiveRateModel(InterferenceModel):
             dtype=np.float64,
         )
 
+    def _factor(self, link: LinkIndex, stations: int, hidden_units: int) -> float:
+        clean_Mbps = self._levels.rates_Mbps[link][0]
+        effective_Mbps = self._levels.effective_rate_Mbps(link, hidden_units)
+        return self._shares.factor(clean_Mbps, effective_Mbps, stations)
+
     @override
     def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
         reached = set(changed)
         for link in changed:
-            reached.update(self._related.conflicts.of(link).tolist())
-            reached.update(self._related.victims.of(link).tolist())
+            reached.update(self._related.affected(link).tolist())
         return reached
 
     @override
@@ -100,19 +106,12 @@ class EffectiveRateModel(InterferenceModel):
 
     @override
     def open_session(self) -> InterferenceSession:
+        if not self._influence.fits:  # tens of thousands of links all within earshot
+            return PlainSession(self)
         if self._related.link_count <= MAX_LINKS_OF_ROW_SESSION:
-            return RowSession(self._rows, self._levels, self._shares, self._share_rows)
-        return MatrixSession(self._related, self._levels, self._shares, self._share_rows)
+            return RowSession(self._influence, self._levels, self._shares)
+        return ArraySession(self._influence, self._levels, self._shares)
 
     @cached_property
-    def _rows(self) -> list[list[int]]:
-        return influence_rows(self._related, self._levels)
-
-    @cached_property
-    def _share_rows(self) -> list[list[list[float]]]:
-        return self._shares.rows_by_level(self._levels)
-
-    def _factor(self, link: LinkIndex, stations: int, hidden_units: int) -> float:
-        clean_Mbps = self._levels.rates_Mbps[link][0]
-        effective_Mbps = self._levels.effective_rate_Mbps(link, hidden_units)
-        return self._shares.factor(clean_Mbps, effective_Mbps, stations)
+    def _influence(self) -> Influence:
+        return influence_of(self._related, self._levels)
