@@ -116,23 +116,25 @@ def relations_of(network: Network, power_dBm: FloatArray, radio: Radio) -> Relat
     on_air = np.flatnonzero([is_on_air(link) for link in network.links])
     ends = LinkEnds(np.array(network.sources)[on_air], np.array(network.targets)[on_air])
     hears = hearing(power_dBm, radio)
-    is_audible = power_dBm >= radio.interference_cutoff_dBm
     power_mW = mW_from_dBm(power_dBm)
+    power_mW[power_dBm < radio.interference_cutoff_dBm] = 0.0
+    names = on_air.astype(np.int32)
     row_lengths = np.zeros(len(network.links) + 1, np.int64)
-    columns, conflicts, powers_mW = [on_air[:0]], [np.zeros(0, np.bool_)], [np.zeros(0)]
+    columns, conflicts, powers_mW = [names[:0]], [np.zeros(0, np.bool_)], [np.zeros(0)]
     for block in _blocks(len(on_air)):
         in_conflict = conflict_block(block, ends, hears, rts_cts=radio.rts_cts)
-        is_related = is_audible[ends.sources[block]][:, ends.targets] | in_conflict
+        at_receivers_mW = power_mW[ends.sources[block]].take(ends.targets, axis=1)
+        is_related = at_receivers_mW > 0.0
+        is_related |= in_conflict
         own = np.arange(block.start, block.stop)
         is_related[own - block.start, own] = False  # no link is its own neighbour
-        rows, others = np.nonzero(is_related)
         row_lengths[on_air[block] + 1] = np.count_nonzero(is_related, axis=1)
-        columns.append(others)
+        columns.append(np.broadcast_to(names, is_related.shape)[is_related])
         conflicts.append(in_conflict[is_related])
-        powers_mW.append(power_mW[ends.sources[block][rows], ends.targets[others]])
+        powers_mW.append(at_receivers_mW[is_related])
     return Relations(
         np.cumsum(row_lengths),
-        on_air[np.concatenate(columns)].astype(np.int32),
+        np.concatenate(columns),
         np.concatenate(conflicts),
         np.concatenate(powers_mW),
     )
@@ -163,13 +165,11 @@ def conflict_block(block: slice, ends: LinkEnds, hears: BoolArray, *, rts_cts: b
     """
     source_hears = hears[ends.sources[block]]
     target_hears = hears[ends.targets[block]]
-    in_conflict: BoolArray = source_hears[:, ends.sources]
-    in_conflict |= source_hears[:, ends.targets]
-    in_conflict |= target_hears[:, ends.sources]
+    in_conflict: BoolArray = (source_hears | target_hears).take(ends.sources, axis=1)
     if rts_cts:
-        in_conflict |= target_hears[:, ends.targets]
-    else:
-        in_conflict |= ends.targets[block][:, None] == ends.targets[None, :]
+        source_hears |= target_hears
+    in_conflict |= source_hears.take(ends.targets, axis=1)
+    in_conflict |= ends.targets[block][:, None] == ends.targets[None, :]
     return in_conflict
 
 
