@@ -41,7 +41,7 @@ _BOUND_WORDS = {
 }
 
 
-def schema_problems(document: object, registry: Registry) -> list[Problem]:
+def schema_problems(document: Data, registry: Registry) -> list[Problem]:
     """Return everything in which ``document`` departs from the composed schema."""
     schema = compose_schema(registry)
     if plain_fit(schema)(document):

@@ -1,10 +1,10 @@
 """Says in microseconds whether data plainly fits a schema.
 
-A "yes" is certain, and means that all numbers are finite; a "no" only means that jsonschema has to be asked, which knows every
-keyword and can explain. A good scenario of any size is thus accepted without importing jsonschema.
+A "yes" is certain, and means that all numbers are finite; a "no" only means that jsonschema has to
+be asked, which knows every keyword and can explain. A good scenario of any size is thus accepted
+without importing jsonschema.
 """
 
-import re
 from collections.abc import Callable, Mapping
 from math import isfinite
 from typing import Any, TypeAlias
