@@ -5,6 +5,7 @@ be asked, which knows every keyword and can explain. A good scenario of any size
 without importing jsonschema.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from math import isfinite
 from typing import Any, TypeAlias
