@@ -43,6 +43,15 @@ class CatalogueEntry:
 
 _OptionSchemas: TypeAlias = Mapping[str, Mapping[str, object]]
 
+_OPTIONS_OF_NATIVE: _OptionSchemas = {
+    "engine": {
+        "description": "Who plans: ncsim's own planner (native), SAGA's (saga), or ncsim's choice "
+        "(auto, at present native). Placements are the same.",
+        "type": "string",
+        "enum": ["auto", "native", "saga"],
+        "default": "auto",
+    }
+}
 _OPTIONS_OF_FCP: _OptionSchemas = {
     "priority_queue_size": {
         "description": "Ready tasks kept sorted by priority, a count; null: one per node.",
@@ -102,6 +111,7 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "cpop",
             "CpopScheduler",
             "Critical path on one processor.",
+            _OPTIONS_OF_NATIVE,
             source="https://doi.org/10.1109/71.993206",
         ),
         CatalogueEntry("dps", "DPSScheduler", "Dynamic priority scheduling."),
@@ -139,6 +149,7 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "heft",
             "HeftScheduler",
             "Heterogeneous earliest finish time.",
+            _OPTIONS_OF_NATIVE,
             source="https://doi.org/10.1109/71.993206",
         ),
         CatalogueEntry("maxmin", "MaxMinScheduler", "Largest least completion time first."),

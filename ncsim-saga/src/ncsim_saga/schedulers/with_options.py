@@ -5,7 +5,18 @@ from typing import Literal
 from ncsim_core.context import BuildContext
 from ncsim_core.contracts.scheduler import Scheduler
 
+from ncsim_saga.schedulers.native_scheduler import NativeScheduler
 from ncsim_saga.schedulers.saga_scheduler import SagaScheduler
+
+
+def heft(context: BuildContext, *, engine: Literal["auto", "native", "saga"] = "auto") -> Scheduler:
+    """Return heterogeneous earliest finish time."""
+    return NativeScheduler(context, name="heft", engine=engine)
+
+
+def cpop(context: BuildContext, *, engine: Literal["auto", "native", "saga"] = "auto") -> Scheduler:
+    """Return critical path on one processor."""
+    return NativeScheduler(context, name="cpop", engine=engine)
 
 
 def fcp(context: BuildContext, *, priority_queue_size: int | None = None) -> Scheduler:
