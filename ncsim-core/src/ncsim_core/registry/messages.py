@@ -14,13 +14,13 @@ def ambiguous_name(kind: str, name: str, rivals: Sequence[RegisteredComponent]) 
 
 
 def unknown_name(
-    kind: str, name: str, installed: Sequence[str], plugins: Iterable[PluginRecord]
+    kind: str, name: str, installed: Sequence[str], plugins: Sequence[PluginRecord]
 ) -> str:
     """Return the message for a name that nobody offers: what was meant, what to do."""
     return "; ".join(
         (
             f"unknown {kind} {name!r}",
-            *_suggestion(kind, name, installed),
+            *_suggestion(kind, name, installed, plugins),
             f"installed: {', '.join(sorted(installed)) or 'none'}",
             *_plugins_left_out(plugins),
         )
@@ -36,16 +36,21 @@ def close_match(name: str, candidates: Iterable[str]) -> str | None:
     return next(iter(difflib.get_close_matches(name, sorted(candidates), n=1)), None)
 
 
-def _suggestion(kind: str, name: str, installed: Sequence[str]) -> list[str]:
-    """Return which name was meant and, where it is not installed, which package has it."""
-    known = PROVIDER_BY_NAME.get(kind, {})
+def _suggestion(
+    kind: str, name: str, installed: Sequence[str], plugins: Sequence[PluginRecord]
+) -> list[str]:
+    """Return which name was meant and, where it is not there, which package has it."""
+    loaded = {each.distribution for each in plugins if each.status == "ok"}
+    known = {each for each, owner in PROVIDER_BY_NAME.get(kind, {}).items() if owner not in loaded}
     meant = name if name in known else close_match(name, {*installed, *known})
     if meant is None:
         return []
     advice = [] if meant == name else [f"did you mean {meant!r}"]
     package = provider(kind, meant)
     if meant not in installed and package is not None:
-        advice.append(f"{meant!r} comes with {package}: pip install {package}")
+        is_there = package in {each.distribution for each in plugins}
+        remedy = ", which did not load" if is_there else f": pip install {package}"
+        advice.append(f"{meant!r} comes with {package}{remedy}")
     return advice
 
 

@@ -1,0 +1,5 @@
+"""Fixtures of the registry's tests."""
+
+from ncsim_core.testing.fixtures import fake_dist
+
+__all__ = ["fake_dist"]
