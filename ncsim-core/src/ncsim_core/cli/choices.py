@@ -1,0 +1,115 @@
+"""Options that several verbs share: which scenario values to override, and when to give up."""
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, TypeAlias
+
+import typer
+
+from ncsim_core.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from ncsim_core.engine.setup import Limits
+    from ncsim_core.scenario.model import Config
+
+ScenarioPath: TypeAlias = Annotated[
+    str, typer.Argument(help="Scenario file, YAML or JSON.", metavar="SCENARIO")
+]
+Settings: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        "-s",
+        metavar="KEY=VALUE",
+        help="Override a value under config, e.g. -s rf.tx_power_dBm=18. May be repeated.",
+    ),
+]
+SchedulerName: TypeAlias = Annotated[
+    str | None, typer.Option("--scheduler", help="Override config.scheduler.", metavar="NAME")
+]
+RoutingName: TypeAlias = Annotated[
+    str | None, typer.Option("--routing", help="Override config.routing.", metavar="NAME")
+]
+InterferenceName: TypeAlias = Annotated[
+    str | None, typer.Option("--interference", help="Override config.interference.", metavar="NAME")
+]
+Seed: TypeAlias = Annotated[int | None, typer.Option("--seed", help="Override config.seed.")]
+MaxEvents: TypeAlias = Annotated[
+    int | None, typer.Option("--max-events", min=0, help="Give up after this many events.")
+]
+MaxTime: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--max-time", min=0, help="Give up when simulated time passes this (s)."),
+]
+
+
+def overrides_of(settings: Sequence[str] | None, **named: object) -> dict[str, object]:
+    """Return overrides by dotted path: those of ``--set``, then the named options given.
+
+    Raises:
+        ScenarioError: A setting has no ``=``.
+    """
+    overrides: dict[str, object] = {}
+    for setting in settings or ():
+        key, equals, text = setting.partition("=")
+        if not equals or not key.strip():
+            raise ScenarioError(
+                f"--set {setting!r}: expected KEY=VALUE, e.g. --set rf.tx_power_dBm=18"
+            )
+        overrides[key.strip()] = _value(text)
+    return overrides | {key: value for key, value in named.items() if value is not None}
+
+
+def limits_of(max_events: int | None, max_time_s: float | None) -> "Limits":
+    """Return the limits of a run."""
+    from ncsim_core.engine.setup import Limits
+    from ncsim_core.units import us_from_s
+
+    return Limits(max_events, None if max_time_s is None else us_from_s(max_time_s))
+
+
+def _value(text: str) -> object:
+    """Return what a scenario file would make of ``text``; lists and mappings as JSON."""
+    from ncsim_core.scenario.yaml_text import plain_value
+
+    word = text.strip()
+    if not word.startswith(("[", "{")):
+        return plain_value(word)
+    try:
+        return json.loads(word)
+    except ValueError as error:
+        raise ScenarioError(f"--set: {word!r} is no JSON: {error}") from None
+
+
+def table(rows: Sequence[Sequence[object]], header: Sequence[str]) -> str:
+    """Return rows as aligned columns; numbers to the right."""
+    texts = [[_cell(value) for value in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(header, *texts, strict=True)]
+    is_number = [
+        bool(rows) and all(isinstance(row[i], int | float) or row[i] is None for row in rows)
+        for i in range(len(header))
+    ]
+    lines = [_aligned(header, widths, is_number), *(_aligned(t, widths, is_number) for t in texts)]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _aligned(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
+    return "  ".join(
+        cell.rjust(width) if right else cell.ljust(width)
+        for cell, width, right in zip(cells, widths, is_number, strict=True)
+    )
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.6f}" if isinstance(value, float) else str(value)
+
+
+def component_line(config: "Config") -> str:
+    """Return which components answer, in one line."""
+    from ncsim_core.plugins import KINDS
+
+    return ", ".join(
+        f"{KINDS[kind].config_key} {spec.name}" for kind, spec in config.components.items()
+    )

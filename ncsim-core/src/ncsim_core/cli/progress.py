@@ -1,0 +1,73 @@
+"""A line on the terminal that says how far long work is; silent when nobody looks."""
+
+import sys
+import time
+from typing import TYPE_CHECKING, Final
+
+from typing_extensions import override
+
+from ncsim_core.engine.observer import Observer
+from ncsim_core.units import Instant, s_from_us
+
+if TYPE_CHECKING:
+    from ncsim_core.engine.outcome import Outcome
+    from ncsim_core.engine.setup import Setup
+
+QUIET_FOR_s: Final = 0.5
+REDRAW_EVERY_s: Final = 0.1
+
+
+class ProgressLine:
+    """A line on stderr that is drawn over itself; nothing if stderr is no terminal.
+
+    Args:
+        is_wanted: ``False`` keeps it silent on a terminal too.
+    """
+
+    def __init__(self, *, is_wanted: bool = True) -> None:
+        self.is_shown = is_wanted and sys.stderr.isatty()
+        self._next_draw_s = time.monotonic() + QUIET_FOR_s
+        self._width = 0
+
+    def show(self, text: str) -> None:
+        """Draw ``text``, unless the last line was drawn just now."""
+        if not self.is_shown or time.monotonic() < self._next_draw_s:
+            return
+        self._draw(text)
+        self._next_draw_s = time.monotonic() + REDRAW_EVERY_s
+
+    def clear(self) -> None:
+        """Take the line away."""
+        if self._width:
+            self._draw("")
+            sys.stderr.write("\r")
+            self._width = 0
+
+    def _draw(self, text: str) -> None:
+        sys.stderr.write("\r" + text.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(text)
+
+
+class RunProgress(Observer):
+    """Shows how many tasks of a run have ended."""
+
+    wants_rates = False
+
+    def __init__(self, line: ProgressLine) -> None:
+        self._line = line
+        self._total = 0
+        self._ended = 0
+
+    @override
+    def run_started(self, setup: "Setup") -> None:
+        self._total = len(setup.tasks)
+
+    @override
+    def task_ended(self, at_us: Instant, task: int, node: int) -> None:
+        self._ended += 1
+        self._line.show(f"{self._ended}/{self._total} tasks, {s_from_us(at_us):.3f} s simulated")
+
+    @override
+    def run_ended(self, outcome: "Outcome") -> None:
+        self._line.clear()
