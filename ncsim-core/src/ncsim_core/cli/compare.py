@@ -1,5 +1,6 @@
 """``ncsim compare``: what changed between two runs, and why?"""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -40,11 +41,12 @@ def compare(
 
 def comparison_document(comparison: "Comparison") -> dict[str, object]:
     """Return a comparison ready for JSON; changes in microseconds."""
+    ratio = comparison.makespan_ratio
     return {
         "differences": [each._asdict() for each in comparison.differences],
         "status": [comparison.first_status, comparison.second_status],
         "makespan_s": [comparison.first_makespan_s, comparison.second_makespan_s],
-        "makespan_ratio": comparison.makespan_ratio,
+        "makespan_ratio": None if ratio == math.inf else ratio,  # JSON has no infinity
         "tasks": [
             {
                 "label": change.label,

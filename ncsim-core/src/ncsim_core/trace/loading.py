@@ -120,6 +120,7 @@ def _enter_transfer(
 ) -> None:
     match record:
         case TransferStarted(_, at_us, transfer, route):
+            _expect_usable(route, builder)
             builder.route[transfer] = tuple(route)
             builder.transfer_started_us[transfer] = at_us
         case TransferEnded(_, at_us, transfer):
@@ -127,6 +128,14 @@ def _enter_transfer(
         case RatesAssigned():
             for transfer, step in rate_steps(record):
                 builder.add_step(transfer, step)
+
+
+def _expect_usable(route: list[int], builder: RunBuilder) -> None:
+    if not route:
+        raise ValueError("xstart: the route is empty")
+    for link in route:
+        if builder.preamble.links[link].bandwidth_MBps <= 0:
+            raise ValueError(f"xstart: link {link} of the route has no bandwidth")
 
 
 def rate_steps(record: RatesAssigned) -> Iterator[tuple[int, RateStep]]:
