@@ -4,7 +4,7 @@ Relations are kept as neighbour lists, because in a large network most links are
 built in blocks of rows, so that memory stays in proportion to the answer.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -61,6 +61,13 @@ class Relations:
         """Return the conflict neighbourhood N of a link."""
         row = self.row(link)
         return self.links[row][self.is_conflict[row]]
+
+    def reach(self, changed: Collection[LinkIndex]) -> set[LinkIndex]:
+        """Return ``changed`` and all links affected by them."""
+        reached = set(changed)
+        for link in changed:
+            reached.update(self.affected(link).tolist())
+        return reached
 
     @cached_property
     def conflict_counts(self) -> IntArray:

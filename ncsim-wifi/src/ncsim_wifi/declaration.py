@@ -28,8 +28,30 @@ def ncsim_components() -> Iterable[Component]:
             factory="ncsim_wifi.interference_models.csma_bianchi:csma_bianchi",
             summary="Carrier sensing, Bianchi contention and hidden terminals by SINR.",
             options="ncsim_wifi:schemas/csma_bianchi.json",
-            capabilities=frozenset({"needs_radio"}),
+            capabilities=frozenset({"needs_radio", "monotone"}),
             source=PAPER,
+        ),
+        Component(
+            kind="interference_model",
+            name="proximity",
+            factory="ncsim_wifi.interference_models.proximity:ProximityModel",
+            summary="1/k for k active links with midpoints within a radius; no radio needed.",
+            options="ncsim_wifi:schemas/proximity.json",
+            capabilities=frozenset({"monotone"}),
+            source="published ncsim",
+        ),
+        Component(
+            kind="interference_model",
+            name="csma_clique",
+            factory="ncsim_wifi.interference_models.csma_clique:CsmaCliqueModel",
+            summary="Static share by the largest clique of the conflict graph around a link.",
+            capabilities=frozenset({"needs_radio", "monotone"}),
+            source="published ncsim",
+            expected_failures={
+                "alone_a_link_keeps_its_bandwidth": (
+                    "the share is static: it counts every link of the clique, active or not"
+                ),
+            },
         ),
     ]
 

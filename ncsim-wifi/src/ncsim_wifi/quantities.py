@@ -1,5 +1,6 @@
 """Arrays of physical quantities, and the one conversion between decibels and milliwatts."""
 
+import math
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -15,6 +16,8 @@ Quantity = TypeVar("Quantity", float, FloatArray)
 
 def log10(value: Quantity) -> Quantity:
     """Return the decimal logarithm; minus infinity for 0."""
+    if isinstance(value, float):
+        return math.log10(value) if value > 0.0 else -math.inf
     with np.errstate(divide="ignore"):
         result: Quantity = np.log10(value)
     return result

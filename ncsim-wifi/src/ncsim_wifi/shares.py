@@ -15,7 +15,7 @@ class Shares:
 
     def __init__(self, timing: Timing, outage_floor_factor: float = 0.0) -> None:
         self._timing = timing
-        self._floor = outage_floor_factor
+        self.floor = outage_floor_factor
         self._rows: dict[tuple[float, float], list[float]] = {}
 
     def row(self, clean_Mbps: float, effective_Mbps: float) -> list[float]:
@@ -49,4 +49,4 @@ class Shares:
         if clean_Mbps <= 0.0:  # unusable: nothing to slow down, but alone is alone
             return float(stations == 1 and effective_Mbps == clean_Mbps)
         factor = combined_factor(effective_Mbps, clean_Mbps, stations, self._timing)
-        return max(factor, self._floor)
+        return max(factor, self.floor)

@@ -1,12 +1,13 @@
 """The interference model ``csma_bianchi``: which rule it follows is an option."""
 
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 from ncsim_core.context import BuildContext
 from ncsim_core.contracts.interference_model import InterferenceModel
 
 from ncsim_wifi.conflict import Relations, relations
 from ncsim_wifi.interference_models.effective_rate import EffectiveRateModel
+from ncsim_wifi.interference_models.fixed_capture import FixedCaptureModel
 from ncsim_wifi.levels import levels_of
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.propagation import is_on_air, propagation, require_positions
@@ -39,21 +40,31 @@ def csma_bianchi(
         ModelScopeError: ``fixed_capture`` does not cover these radio parameters.
     """
     radio = Radio.from_section(context.section("rf"))
-    seed = radio.draws_from(context.seed)
-    key = ("ncsim_wifi.csma_bianchi", radio, seed, hidden_model, components, outage_floor_factor)
-    return context.cached(key, lambda: _build(context, radio, components, outage_floor_factor))
+    options = Options(hidden_model, components, outage_floor_factor)
+    return context.cached(
+        ("ncsim_wifi.csma_bianchi", radio, radio.draws_from(context.seed), options),
+        lambda: _build(context, radio, options),
+    )
 
 
-def _build(
-    context: BuildContext, radio: Radio, components: Components, outage_floor_factor: float
-) -> InterferenceModel:
+class Options(NamedTuple):
+    """The options of ``csma_bianchi``, described there."""
+
+    hidden_model: HiddenModel
+    components: Components
+    outage_floor_factor: float
+
+
+def _build(context: BuildContext, radio: Radio, options: Options) -> InterferenceModel:
     network = context.network
     on_air = [index for index, link in enumerate(network.links) if is_on_air(link)]
     require_positions(network, on_air, "interference csma_bianchi")
-    related = _ablated(relations(context, radio), components)
-    levels = levels_of(propagation(context, radio), radio)
-    shares = Shares(AxTiming(radio.rts_cts), outage_floor_factor)
-    return EffectiveRateModel(related, levels, shares)
+    related = _ablated(relations(context, radio), options.components)
+    signals = propagation(context, radio)
+    shares = Shares(AxTiming(radio.rts_cts), options.outage_floor_factor)
+    if options.hidden_model == "fixed_capture":
+        return FixedCaptureModel(network.links, related, signals, radio, shares)
+    return EffectiveRateModel(related, levels_of(signals, radio), shares)
 
 
 def _ablated(related: Relations, components: Components) -> Relations:

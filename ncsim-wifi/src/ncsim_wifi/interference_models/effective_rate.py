@@ -85,10 +85,7 @@ class EffectiveRateModel(InterferenceModel):
 
     @override
     def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
-        reached = set(changed)
-        for link in changed:
-            reached.update(self._related.affected(link).tolist())
-        return reached
+        return self._related.reach(changed)
 
     @override
     def competition(

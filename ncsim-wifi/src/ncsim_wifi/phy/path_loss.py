@@ -32,7 +32,7 @@ def path_loss_dB(distance_m: Quantity, reference_loss_dB: float, exponent: float
         reference_loss_dB: Loss at 1 m.
         exponent: Path-loss exponent n; 2 is free space.
 
-    >>> round(float(path_loss_dB(30.0, 46.42, 3.0)), 2)
+    >>> round(path_loss_dB(30.0, 46.42, 3.0), 2)
     90.73
     """
     clipped_m: Quantity = np.maximum(distance_m, REFERENCE_DISTANCE_m)
