@@ -66,6 +66,8 @@ def exit_code_of(command: Callable[[], object]) -> int:  # noqa: PLR0911 - one f
     """Return the exit code of a command, after printing what went wrong to stderr."""
     try:
         code = command()
+    except typer.Exit as stop:
+        return stop.exit_code
     except TyperException as error:
         error.show() if hasattr(error, "show") else _complain(str(error))
         return ExitCode.INVALID_INPUT
