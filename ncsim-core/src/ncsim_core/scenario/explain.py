@@ -55,7 +55,9 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
     if len(findings) == MAX_FINDINGS:
         message = f"has {MAX_FINDINGS} faults or more; only that many are listed"
         problems[(), message] = Problem((), message)
-    return [*_without_echoes(list(problems.values())), *_number_problems(document)]
+    told = {path for path, _ in problems}
+    infinite = [each for each in _number_problems(document) if each.path not in told]
+    return [*_without_echoes(list(problems.values())), *infinite]
 
 
 def _number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:

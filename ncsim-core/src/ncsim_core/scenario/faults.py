@@ -1,6 +1,6 @@
 """What is wrong with a scenario, where, and how it is shown."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, TypeAlias
 
@@ -105,7 +105,19 @@ def path_text(path: Path) -> str:
     """
     parts = path[1:] if path and path[0] == "scenario" else path
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in parts)
-    return text.removeprefix(".")
+    return _printable(text.removeprefix("."))
+
+
+def original_path(path: Path, moved: Mapping[Path, Path]) -> Path:
+    """Return where ``path`` was before its longest moved beginning was moved.
+
+    >>> original_path(("scenario", "dags", 0), {("scenario",): ()})
+    ('dags', 0)
+    """
+    for end in range(len(path), -1, -1):
+        if path[:end] in moved:
+            return (*moved[path[:end]], *path[end:])
+    return path
 
 
 def shown(value: object, width: int = 60) -> str:
@@ -122,6 +134,11 @@ def shown(value: object, width: int = 60) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
+def _printable(text: str) -> str:
+    """Return text that does nothing to a terminal, at the same length."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
 def _text(faults: Sequence[Fault]) -> str:
     lines = [fault.render() for fault in faults[:MAX_SHOWN_FAULTS]]
     if len(faults) > MAX_SHOWN_FAULTS:
@@ -132,7 +149,7 @@ def _text(faults: Sequence[Fault]) -> str:
 def _excerpt(line_text: str, line: int, column: int, length: int) -> str:
     """Return the offending line with a caret line below it."""
     start = max(0, column - 1 - EXCERPT_WIDTH // 2) if len(line_text) > EXCERPT_WIDTH else 0
-    window = line_text[start : start + EXCERPT_WIDTH].replace("\t", " ")
+    window = _printable(line_text[start : start + EXCERPT_WIDTH])
     before = column - 1 - start
     carets = "^" * max(1, min(length, len(window) - before))
     return f"{line:>6} | {window}\n       | {' ' * before}{carets}"

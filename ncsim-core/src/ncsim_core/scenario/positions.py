@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import yaml
 
 MAX_DEPTH = 64
+SHOWN_DEPTH = 4
+"""Steps of a path that are shown when nesting goes too deep."""
 MAX_ALIASED_VALUES = 100_000
 TEXT_TAGS = frozenset({"!", "tag:yaml.org,2002:str"})
 
@@ -220,6 +222,7 @@ class _Reader:
         if self._frames and self._frames[-1].wants_key():
             self._stop(event, "a key must be text, not a mapping or a list")
         if len(self._frames) >= MAX_DEPTH:
+            del self._frames[SHOWN_DEPTH:]
             self._stop(event, f"nested more than {MAX_DEPTH} levels deep")
         self._record(event)
         self._frames.append(_Frame(container, event.anchor))

@@ -24,7 +24,7 @@ from typing import Any
 
 from ncsim_core.registry import Registry
 from ncsim_core.scenario.explain import CONFIG
-from ncsim_core.scenario.faults import Data, Path, Problem
+from ncsim_core.scenario.faults import Data, Path, Problem, original_path
 from ncsim_core.scenario.resolution import component_name, default_name
 
 PUBLISHED_RADIUS_m = 15.0
@@ -188,7 +188,7 @@ class _Work:
         self._config["link_model"] = {"type": _WIFI, "options": {**options, "rate": rate}}
         self._config["interference"] = interference
         if old is None:
-            self._moved[(*CONFIG, "link_model")] = (*CONFIG, "interference")
+            self._move(("link_model",), ("interference",))
         self._notes.append(
             f"config.interference: {mode} is read as link_model {_WIFI} (rate: {rate}) "
             f"with interference {interference}"
@@ -204,8 +204,7 @@ class _Work:
         inner = row.get("options", {}) if isinstance(row, dict) else {}
         self._config["scheduler"] = {"type": name, "options": {**flat, **inner}}
         for key in flat.keys() - inner.keys():
-            new = (*CONFIG, "scheduler", "options", key)
-            self._moved[new] = (*CONFIG, "scheduler_options", key)
+            self._move(("scheduler", "options", key), ("scheduler_options", key))
         self._notes.append(f"config.scheduler_options is read as the options of scheduler {name}")
 
     def _translate_option(self, key: str, owner: str, option: str) -> None:
@@ -220,8 +219,12 @@ class _Work:
             return
         inner = row.get("options", {}) if isinstance(row, dict) else {}
         self._config["interference"] = {"type": owner, "options": {option: value, **inner}}
-        self._moved[(*CONFIG, "interference", "options", option)] = (*CONFIG, key)
+        self._move(("interference", "options", option), (key,))
         self._notes.append(f"config.{key} is read as option {option} of interference {owner}")
+
+    def _move(self, new: Path, old: Path) -> None:
+        """Note that ``new`` in the config was taken from ``old`` in the config."""
+        self._moved[(*CONFIG, *new)] = original_path((*CONFIG, *old), self._moved)
 
 
 def _dag_with_text_ids(dag: Data, changed: list[str]) -> Data:

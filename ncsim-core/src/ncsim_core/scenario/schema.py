@@ -13,7 +13,7 @@ from ncsim_core.scenario.model import DEFAULT_SEED
 
 Schema: TypeAlias = dict[str, Any]
 
-MAX_INJECT_AT_s = 9e9
+MAX_INJECT_AT_s = 9_000_000_000
 """285 years: beyond, microseconds are no longer exact in the double of a JSON reader."""
 
 QUALIFIED_NAME = r"^[a-z0-9][a-z0-9._-]*/[a-z][a-z0-9_]*$"

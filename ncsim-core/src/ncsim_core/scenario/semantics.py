@@ -35,15 +35,14 @@ def network_problems(scenario: Row) -> Iterator[Problem]:
 
 def dag_problems(scenario: Row) -> Iterator[Problem]:
     """Yield repeated ids, edges that lead nowhere or stand twice, cycles, and wrong pins."""
-    node_ids = _ids(list(rows(scenario, ("scenario", "network", "nodes"))))
+    nodes = list(rows(scenario, ("scenario", "network", "nodes")))
     dags = list(rows(scenario, ("scenario", "dags")))
     yield from _repeated(dags, "DAG")
     for path, dag in dags:
         tasks = list(rows(dag, (*path, "tasks"), start=len(path)))
         edges = list(rows(dag, (*path, "edges"), start=len(path)))
         yield from _repeated(tasks, "task")
-        for task_path, task in tasks:
-            yield from _dangling((*task_path, "pinned_to"), task.get("pinned_to"), node_ids, "node")
+        yield from _wrong_pins(tasks, _ids(nodes))
         yield from _edge_problems(tasks, edges)
 
 
@@ -94,6 +93,12 @@ def _repeated(listed: list[tuple[Path, Row]], noun: str) -> Iterator[Problem]:
 def _dangling(path: Path, name: object, known: Mapping[str, None], noun: str) -> Iterator[Problem]:
     if isinstance(name, str) and name and name not in known:
         yield Problem(path, f"no {noun} {name!r}", shown(name), did_you_mean(name, known))
+
+
+def _wrong_pins(tasks: list[tuple[Path, Row]], node_ids: Mapping[str, None]) -> Iterator[Problem]:
+    if node_ids:  # without any node, there is a greater fault elsewhere
+        for path, task in tasks:
+            yield from _dangling((*path, "pinned_to"), task.get("pinned_to"), node_ids, "node")
 
 
 def _edge_problems(

@@ -9,7 +9,14 @@ from functools import cached_property
 from pathlib import Path as FilePath
 from typing import Any
 
-from ncsim_core.scenario.faults import Fault, Path, Problem, ScenarioFaults, path_text
+from ncsim_core.scenario.faults import (
+    Fault,
+    Path,
+    Problem,
+    ScenarioFaults,
+    original_path,
+    path_text,
+)
 from ncsim_core.scenario.positions import Positions, Slip, Span, read_yaml
 
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -85,14 +92,14 @@ def read_document(source: Source) -> tuple[Any, list[Slip]]:
     """
     _refuse_unprintable(source)
     if not source.text.strip():
-        raise source.lone_fault("is empty; a scenario begins with 'scenario:'")
+        raise source.lone_fault("is empty; a scenario begins with 'scenario:'", Span(1, 1))
     if source.is_json or source.text.lstrip().startswith("{"):
         quick = _quick_json(source)
         if quick is not None:
             return quick, []
     reading = read_yaml(source.text)
     if reading.document is None and not reading.slips:
-        raise source.lone_fault("is empty; a scenario begins with 'scenario:'")
+        raise source.lone_fault("is empty; a scenario begins with 'scenario:'", Span(1, 1))
     if not isinstance(reading.document, dict):
         slips = reading.slips or [_not_a_mapping(reading.document)]
         raise ScenarioFaults([_slip_fault(source, slip) for slip in slips])
@@ -120,10 +127,7 @@ class Origins:
 
     def source_path(self, path: Path) -> Path:
         """Return where in the source ``path`` was taken from."""
-        for end in range(len(path), -1, -1):
-            if path[:end] in self.moved:
-                return (*self.moved[path[:end]], *path[end:])
-        return path
+        return original_path(path, self.moved)
 
 
 def located(
@@ -132,7 +136,12 @@ def located(
     """Return the error that reports all problems, in the order of the text."""
     positions = read_yaml(source.text, with_positions=True).positions
     faults = [_slip_fault(source, slip) for slip in slips]
-    faults += [_fault(problem, source, positions, origins) for problem in problems]
+    told = {slip.path for slip in slips}
+    faults += [
+        _fault(problem, source, positions, origins)
+        for problem in problems
+        if origins.source_path(problem.path) not in told
+    ]
     faults.sort(key=lambda each: (each.line or 0, each.column or 0))
     return ScenarioFaults(faults)
 
