@@ -12,7 +12,7 @@ Source: SPEC 22; SipHash-1-3 as in CPython's ``Python/pyhash.c`` (3.11 and later
 tuple as in ``Objects/tupleobject.c`` (3.8 and later).
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from typing_extensions import override
@@ -42,12 +42,32 @@ def name_hash(name: str) -> int:
 
 def pair_hash(first: str, second: str) -> int:
     """Return ``hash((first, second))`` of a CPython run with ``PYTHONHASHSEED=0``."""
-    mixed = _XXH_PRIME_5
-    for name in (first, second):
-        mixed = (mixed + (name_hash(name) & _WORD) * _XXH_PRIME_2) & _WORD
-        mixed = (_rotated(mixed, 31) * _XXH_PRIME_1) & _WORD
+    mixed = (_XXH_PRIME_5 + (name_hash(first) & _WORD) * _XXH_PRIME_2) & _WORD
+    mixed = ((mixed << 31 | mixed >> 33) * _XXH_PRIME_1) & _WORD
+    mixed = (mixed + (name_hash(second) & _WORD) * _XXH_PRIME_2) & _WORD
+    mixed = ((mixed << 31 | mixed >> 33) * _XXH_PRIME_1) & _WORD
     mixed = (mixed + _PAIR_LENGTH_MIX) & _WORD
     return _HASH_INSTEAD_OF_MINUS_ONE if mixed == _WORD else _signed(mixed)
+
+
+def all_pair_hashes(names: Sequence[str]) -> list[int]:
+    """Return ``pair_hash(first, second)`` for all ordered pairs, row by row.
+
+    In numpy, for the many virtual links of a large network; unsigned arithmetic wraps around as
+    CPython's does.
+    """
+    import numpy as np
+
+    lanes = np.array([name_hash(name) & _WORD for name in names], np.uint64)
+    lanes *= np.uint64(_XXH_PRIME_2)
+    left, right, prime = np.uint64(31), np.uint64(33), np.uint64(_XXH_PRIME_1)
+    mixed = lanes + np.uint64(_XXH_PRIME_5)
+    mixed = (mixed << left | mixed >> right) * prime
+    mixed = (mixed[:, None] + lanes[None, :]).ravel()
+    mixed = (mixed << left | mixed >> right) * prime + np.uint64(_PAIR_LENGTH_MIX & _WORD)
+    mixed[mixed == np.uint64(_WORD)] = np.uint64(_HASH_INSTEAD_OF_MINUS_ONE)
+    values: list[int] = mixed.view(np.int64).tolist()
+    return values
 
 
 def walking_order(hashes: Iterable[int]) -> list[int]:

@@ -8,7 +8,7 @@ import heapq
 from ncsim_saga.native.heft import Bookings
 from ncsim_saga.native.instance import Instance
 from ncsim_saga.native.processors import Processors
-from ncsim_saga.native.ranks import downward_ranks, upward_ranks
+from ncsim_saga.native.ranks import exact_downward_ranks, exact_upward_ranks
 
 CLOSE_ABSOLUTE_s = 1e-8  # numpy.isclose's defaults, by which SAGA tells critical tasks
 CLOSE_RELATIVE = 1e-5
@@ -16,8 +16,8 @@ CLOSE_RELATIVE = 1e-5
 
 def cpop(instance: Instance, processors: Processors) -> list[int]:
     """Return the position of every task."""
-    ups_s = upward_ranks(instance, processors)
-    downs_s = downward_ranks(instance, processors)
+    ups_s = exact_upward_ranks(instance, processors)
+    downs_s = exact_downward_ranks(instance, processors)
     ranks_s = [up_s + down_s for up_s, down_s in zip(ups_s, downs_s, strict=True)]
     critical = _critical_tasks(ranks_s, instance)
     critical_node = _critical_node(critical, instance, processors)

@@ -5,13 +5,13 @@ Source: https://doi.org/10.1109/71.993206, Section 4.1.
 
 from ncsim_saga.native.instance import Instance
 from ncsim_saga.native.processors import Inputs, Processors
-from ncsim_saga.native.ranks import upward_ranks
+from ncsim_saga.native.ranks import by_urgency
 
 
 def heft(instance: Instance, processors: Processors) -> list[int]:
     """Return the position of every task."""
     bookings = Bookings(instance, processors)
-    for task in _by_urgency(instance, processors):
+    for task in by_urgency(instance, processors):
         position, finish_s = processors.earliest_finish(
             bookings.inputs_of(task), instance.costs[task]
         )
@@ -40,9 +40,3 @@ class Bookings:
         self.positions[task] = position
         self._ends_s[task] = finish_s
         self._processors.book(position, finish_s, self._instance.costs[task])
-
-
-def _by_urgency(instance: Instance, processors: Processors) -> list[int]:
-    """Return tasks by falling rank; equals keep their topological order."""
-    ranks_s = upward_ranks(instance, processors)
-    return sorted(instance.topological, key=ranks_s.__getitem__, reverse=True)

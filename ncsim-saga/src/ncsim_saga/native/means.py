@@ -7,11 +7,6 @@ Source: ``pairwise_sum`` in numpy's ``loops_utils.h.src``; a test compares the t
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 STRANDS = 8
 LONGEST_UNSPLIT = 128
@@ -31,14 +26,9 @@ def pairwise_sum(values: Sequence[float]) -> float:
         return total
     if count <= LONGEST_UNSPLIT:
         return _in_strands(values)
-    half = half_of(count)
-    return pairwise_sum(values[:half]) + pairwise_sum(values[half:])
-
-
-def half_of(count: int) -> int:
-    """Return where numpy splits a sum of more than ``LONGEST_UNSPLIT`` numbers."""
     half = count // 2
-    return half - half % STRANDS
+    half -= half % STRANDS
+    return pairwise_sum(values[:half]) + pairwise_sum(values[half:])
 
 
 def _in_strands(values: Sequence[float]) -> float:
@@ -63,33 +53,3 @@ def _in_strands(values: Sequence[float]) -> float:
 def mean_quotient(dividend: float, divisors: Sequence[float]) -> float:
     """Return the mean of ``dividend / d`` over all divisors."""
     return pairwise_sum([dividend / divisor for divisor in divisors]) / len(divisors)
-
-
-class ArrayMeanQuotient:
-    """``mean_quotient`` over one long array of divisors.
-
-    Quotients are made block by block, so that they stay in the processor's cache; blocks are cut
-    where numpy's own sum splits.
-    """
-
-    BLOCK = 16_384
-
-    def __init__(self, divisors: "NDArray[np.float64]") -> None:
-        import numpy as np
-
-        self._divisors = divisors
-        self._quotients = np.empty(min(self.BLOCK, len(divisors)))
-        self._numpy = np
-
-    def __call__(self, dividend: float) -> float:
-        """Return the mean of ``dividend / d`` over all divisors."""
-        return self._sum(dividend, 0, len(self._divisors)) / len(self._divisors)
-
-    def _sum(self, dividend: float, begin: int, end: int) -> float:
-        count = end - begin
-        if count <= self.BLOCK:
-            quotients = self._quotients[:count]
-            self._numpy.divide(dividend, self._divisors[begin:end], out=quotients)
-            return float(self._numpy.add.reduce(quotients))
-        middle = begin + half_of(count)
-        return self._sum(dividend, begin, middle) + self._sum(dividend, middle, end)

@@ -1,13 +1,18 @@
 """The virtual network in SAGA's order of nodes and links."""
 
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from weakref import WeakKeyDictionary
 
-from ncsim_saga.hash_order import name_hash, pair_hash, walking_order
+from ncsim_saga.hash_order import all_pair_hashes, name_hash, pair_hash, walking_order
 from ncsim_saga.virtual_network import VirtualNetwork, node_name
 
 MAX_REMEMBERED_SIZES = 16
+
+MANY_NODES = 48
+"""From here on numpy is worth its import; see ``benchmarks/planner.py``."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +36,7 @@ def walk_of(node_count: int) -> Walk:
     """Return the orders of a network with this many nodes."""
     names = [node_name(index) for index in range(node_count)]
     nodes = walking_order(map(name_hash, names))
-    links = walking_order(pair_hash(source, target) for source in names for target in names)
+    links = walking_order(_link_hashes(names))
     last = dict.fromkeys(range(node_count * node_count), 0)
     for link in links:
         source, target = divmod(link, node_count)
@@ -41,6 +46,13 @@ def walk_of(node_count: int) -> Walk:
         tuple(links),
         tuple(last[source * node_count + target] for source in nodes for target in nodes),
     )
+
+
+def _link_hashes(names: Sequence[str]) -> Iterable[int]:
+    """Return the hashes of all virtual links; small networks do without numpy."""
+    if len(names) < MANY_NODES:
+        return (pair_hash(source, target) for source in names for target in names)
+    return all_pair_hashes(names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +73,9 @@ class PlanningNetwork:
 
     @cached_property
     def mean_link_slowness(self) -> float:
-        """Return roughly the mean of ``1 / speed`` over all virtual links."""
-        return sum(1.0 / speed_MBps for speed_MBps in self.link_speed_MBps) / len(
-            self.link_speed_MBps
-        )
+        """Return the mean of ``1 / speed`` over all virtual links, within a few roundings."""
+        total = math.fsum(1.0 / speed_MBps for speed_MBps in self.link_speed_MBps)
+        return total / len(self.link_speed_MBps)
 
 
 _known: WeakKeyDictionary[VirtualNetwork, PlanningNetwork] = WeakKeyDictionary()

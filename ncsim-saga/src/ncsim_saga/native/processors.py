@@ -84,7 +84,9 @@ class ListProcessors(Processors):
                 arrival_s = end_s + size_MB / speed_MBps[position]
                 if arrival_s > ready_s:  # noqa: PLR1730  # max() doubles the planner's time
                     ready_s = arrival_s
-            finish_s = self.timelines[position].earliest_finish_s(ready_s, cost / capacity)
-            if finish_s < best_s:
-                best, best_s = position, finish_s
+            duration_s = cost / capacity
+            if ready_s + duration_s < best_s:
+                finish_s = self.timelines[position].earliest_finish_s(ready_s, duration_s)
+                if finish_s < best_s:
+                    best, best_s = position, finish_s
         return best, best_s

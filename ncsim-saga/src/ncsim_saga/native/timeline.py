@@ -25,6 +25,8 @@ class Timeline:
     def earliest_finish_s(self, ready_s: float, duration_s: float) -> float:
         """Return when a task ends that begins in the first gap that holds it."""
         begins, ends = self.gap_begins_s, self.gap_ends_s
+        if ready_s >= begins[-1]:
+            return ready_s + duration_s
         for gap in range(bisect_left(ends, ready_s), len(ends)):
             begin_s = begins[gap]
             finish_s = (max(begin_s, ready_s)) + duration_s

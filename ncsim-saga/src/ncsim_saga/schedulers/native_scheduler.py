@@ -10,13 +10,10 @@ from ncsim_core.contracts.scheduler import NetworkSnapshot, Scheduler
 from ncsim_core.workflow import DAG, PlacementPlan
 from typing_extensions import override
 
-from ncsim_saga.native.planning_network import PlanningNetwork, planning_network
+from ncsim_saga.native.planning_network import MANY_NODES, PlanningNetwork, planning_network
 from ncsim_saga.native.processors import ListProcessors, Processors
 from ncsim_saga.schedulers.saga_scheduler import SagaScheduler
 from ncsim_saga.virtual_network import virtual_network
-
-MANY_NODES = 48
-"""From here on asking all nodes at once is faster; see ``benchmarks/planner.py``."""
 
 
 class NativeScheduler(Scheduler):
