@@ -7,6 +7,7 @@ PYTHON ?= python3
 INSTALLER ?= uv
 VENV := .venv
 BIN := $(VENV)/bin
+unexport PYTHONDONTWRITEBYTECODE  # start-up is speed: keep compiled modules
 PACKAGES := ncsim-core ncsim-wifi ncsim-saga ncsim-routing ncsim-viz
 STAMP := $(VENV)/.installed
 SETUP_INPUTS := pyproject.toml constraints.txt $(PACKAGES:%=%/pyproject.toml)
