@@ -126,7 +126,7 @@ def _link_rows(run: RunTrace) -> list[dict[str, object]]:
             {
                 "id": link.id,
                 "transfers": len(transfers),
-                "served_MB": math.fsum(served_MB(transfer, run) for transfer in transfers),
+                "served_MB": math.fsum(transfer.served_MB for transfer in transfers),
                 "busy_s": s_from_us(busy_us),
                 "utilisation": _share(busy_us, run),
             }
@@ -146,15 +146,3 @@ def _busy_us(transfers: Iterable[RunTransfer], run: RunTrace) -> int:
 
 def _end_us(transfer: RunTransfer, run: RunTrace) -> int:
     return run.end.ended_us if transfer.ended_us is None else transfer.ended_us
-
-
-def served_MB(transfer: RunTransfer, run: RunTrace) -> float:
-    """Return what a transfer has been served: its size, or what its rates so far amount to."""
-    if transfer.ended_us is not None:
-        return transfer.size_MB
-    ends_us = [step.at_us for step in transfer.steps[1:]] + [run.end.ended_us]
-    served = math.fsum(
-        step.rate_MBps * (end_us - step.at_us) / MICROSECONDS_PER_SECOND
-        for step, end_us in zip(transfer.steps, ends_us, strict=False)
-    )
-    return min(transfer.size_MB, served)

@@ -12,6 +12,7 @@ from ncsim_core.trace.run_trace import (
     RunTrace,
     RunTransfer,
 )
+from ncsim_core.units import MICROSECONDS_PER_SECOND
 
 
 class RunBuilder:
@@ -19,10 +20,13 @@ class RunBuilder:
 
     Args:
         preamble: Who ran what, on which nodes and links.
+        keeps_steps: Whether every rate is kept, or only what it amounts to, which takes
+            memory that does not grow with the length of the run.
     """
 
-    def __init__(self, preamble: TracePreamble) -> None:
+    def __init__(self, preamble: TracePreamble, *, keeps_steps: bool = True) -> None:
         self.preamble = preamble
+        self._keeps_steps = keeps_steps
         self.end: RunEnd | None = None
         self.now_us = 0
         self.dags: list[RunDag] = []
@@ -35,7 +39,8 @@ class RunBuilder:
         self.route: list[tuple[int, ...]] = []
         self.transfer_started_us: list[int | None] = []
         self.transfer_ended_us: list[int | None] = []
-        self.steps: dict[int, list[RateStep]] = {}
+        self._steps: dict[int, list[RateStep]] = {}
+        self._service: dict[int, tuple[float, float, int]] = {}
 
     def inject(self, record: Injected) -> None:
         """Enter a DAG and number its tasks and edges.
@@ -89,22 +94,39 @@ class RunBuilder:
         self.node_of_task[first : first + entry.task_count] = nodes
 
     def add_step(self, transfer: int, step: RateStep) -> None:
-        """Enter a transfer's new rate."""
-        self.steps.setdefault(transfer, []).append(step)
+        """Enter a transfer's new rate, and credit what it was served at the old one."""
+        if self._keeps_steps:
+            self._steps.setdefault(transfer, []).append(step)
+        self._service[transfer] = (
+            self._credited_MB(transfer, step.at_us),
+            step.rate_MBps,
+            step.at_us,
+        )
+
+    def end_transfer(self, transfer: int, at_us: int) -> None:
+        """Enter that a transfer has been served."""
+        self.transfer_ended_us[transfer] = at_us
+        self._service.pop(transfer, None)
+
+    def _credited_MB(self, transfer: int, at_us: int) -> float:
+        """Return what an unfinished transfer has been served by an instant."""
+        served_MB, rate_MBps, since_us = self._service.get(transfer, (0.0, 0.0, at_us))
+        return served_MB + rate_MBps * (at_us - since_us) / MICROSECONDS_PER_SECOND
 
     def build(self) -> RunTrace:
         """Return the tables as they are now."""
         preamble = self.preamble
+        end = self.end or RunEnd(TRUNCATED, self.now_us, None, 0)
         return RunTrace(
             header=preamble.header,
-            level=preamble.level,
+            level=preamble.level if self._keeps_steps else "coarse",
             plugins=preamble.plugins,
             nodes=preamble.nodes,
             links=preamble.links,
             dags=tuple(self.dags),
             tasks=self._tasks(),
-            transfers=tuple(map(self._transfer, range(len(self.edges)))),
-            end=self.end or RunEnd(TRUNCATED, self.now_us, None, 0),
+            transfers=tuple(self._transfer(number, end) for number in range(len(self.edges))),
+            end=end,
         )
 
     def _tasks(self) -> tuple[RunTask, ...]:
@@ -114,9 +136,10 @@ class RunBuilder:
             for number, (name, *times) in enumerate(zip(self.names, *columns, strict=True))
         )
 
-    def _transfer(self, number: int) -> RunTransfer:
+    def _transfer(self, number: int, end: RunEnd) -> RunTransfer:
         dag, source, target, size_MB = self.edges[number]
-        node = self.node_of_task[source]
+        node, ended_us = self.node_of_task[source], self.transfer_ended_us[number]
+        served_MB = min(size_MB, self._credited_MB(number, end.ended_us))
         return RunTransfer(
             number=number,
             dag=dag,
@@ -127,6 +150,7 @@ class RunBuilder:
             created_us=self.ended_us[source],
             route=self.route[number],
             started_us=self.transfer_started_us[number],
-            ended_us=self.transfer_ended_us[number],
-            steps=tuple(self.steps.get(number, ())),
+            ended_us=ended_us,
+            served_MB=served_MB if ended_us is None else size_MB,
+            steps=tuple(self._steps.get(number, ())),
         )

@@ -124,7 +124,7 @@ def _enter_transfer(
             builder.route[transfer] = tuple(route)
             builder.transfer_started_us[transfer] = at_us
         case TransferEnded(_, at_us, transfer):
-            builder.transfer_ended_us[transfer] = at_us
+            builder.end_transfer(transfer, at_us)
         case RatesAssigned():
             for transfer, step in rate_steps(record):
                 builder.add_step(transfer, step)

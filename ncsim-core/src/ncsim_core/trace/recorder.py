@@ -25,13 +25,22 @@ class RunRecorder(Observer):
 
     Args:
         header: What the tables say about the scenario.
-        level: ``coarse`` keeps no rates, which is all that most metrics need.
+        level: ``coarse`` looks at no rates; all metrics of completed runs do without.
+        keeps_steps: Whether every rate is kept, as explanations need it. Without, metrics are
+            those of a full trace and memory does not grow with the number of rates.
     """
 
-    def __init__(self, header: TraceHeader | None = None, level: TraceLevel = "full") -> None:
+    def __init__(
+        self,
+        header: TraceHeader | None = None,
+        level: TraceLevel = "full",
+        *,
+        keeps_steps: bool = True,
+    ) -> None:
         self.wants_rates = level == "full"
         self._header = header or TraceHeader()
         self._level = level
+        self._keeps_steps = keeps_steps
         self._setup: Setup | None = None
         self._builder: RunBuilder | None = None
 
@@ -59,7 +68,7 @@ class RunRecorder(Observer):
             nodes=node_rows(setup.network),
             links=link_rows(setup.network),
         )
-        self._setup, self._builder = setup, RunBuilder(preamble)
+        self._setup, self._builder = setup, RunBuilder(preamble, keeps_steps=self._keeps_steps)
 
     @override
     def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
@@ -88,7 +97,7 @@ class RunRecorder(Observer):
 
     @override
     def transfer_ended(self, at_us: Instant, transfer: int) -> None:
-        self._begun.transfer_ended_us[transfer] = at_us
+        self._begun.end_transfer(transfer, at_us)
 
     @override
     def rates_assigned(

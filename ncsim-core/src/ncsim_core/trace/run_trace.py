@@ -89,6 +89,8 @@ class RunTransfer(NamedTuple):
         route: Links it occupies.
         started_us: When latency was paid and byte service began.
         ended_us: When its last byte was served.
+        served_MB: Its size once it has ended; before, what its rates amount to (0 in a coarse
+            trace).
         steps: Its rates in order of time; none in a coarse trace.
     """
 
@@ -102,6 +104,7 @@ class RunTransfer(NamedTuple):
     route: tuple[int, ...] = ()
     started_us: int | None = None
     ended_us: int | None = None
+    served_MB: float = 0.0
     steps: tuple[RateStep, ...] = ()
 
 

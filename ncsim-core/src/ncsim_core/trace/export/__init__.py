@@ -1,0 +1,1 @@
+"""Traces in the forms that other tools read; each is made from the tables of a run."""
