@@ -83,3 +83,12 @@ def test_a_fault_in_an_override_is_said_to_be_there(overrides, message, with_ant
 def test_a_file_with_a_broken_config_still_reports_its_own_faults(core: Registry):
     with pytest.raises(ScenarioFaults, match="config: must be a mapping, not a list"):
         parse_scenario(scenario_text("[]"), {"seed": 1}, registry=core)
+
+
+def test_options_of_a_default_that_cannot_be_decided_are_a_fault(with_antenna: Registry):
+    config, overrides = "{interference: fog}", {"link_model.options.gain_dB": 9}
+
+    with pytest.raises(ScenarioFaults, match=r"config.interference: unknown") as caught:
+        parse_scenario(scenario_text(config), overrides, registry=with_antenna)
+
+    assert "config.link_model: 'type' is missing" in str(caught.value)

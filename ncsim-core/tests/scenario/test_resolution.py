@@ -13,6 +13,7 @@ def ncsim_components():
     return [
         Component("interference_model", "fog", "fog:Fog", "x", capabilities={"needs_radio"}),
         Component("scheduler", "heft", "fog:Heft", "x"),
+        Component("scheduler", "dear", "fog:Dear", "x", requires=("no-such-package>=2",)),
     ]
 """
 
@@ -76,3 +77,19 @@ def test_a_section_nobody_uses_is_left_out(with_antenna: Registry):
 def test_the_missing_bandwidth_names_the_models_that_do_without(with_antenna: Registry):
     with pytest.raises(ScenarioFaults, match=r"derives it from positions \(antenna\)"):
         chosen("{}", with_antenna, bandwidth="")
+
+
+@pytest.mark.parametrize(
+    ("config", "message"),
+    [
+        ("{scheduler: dear}", "config.scheduler: .* needs no-such-package>=2"),
+        ("{scheduler: {type: dear}}", "config.scheduler.type: .* needs no-such-package>=2"),
+        ("{scheduler: a/heft}", "config.scheduler: unknown scheduler 'a/heft'"),
+        ("{scheduler: dear, sead: 1}", "(?s)config.scheduler: .*config.sead: unknown key"),
+    ],
+)
+def test_a_component_that_cannot_be_had_is_a_fault_at_its_name(config, message, fake_dist):
+    fake_dist("fog", {"fog_plugin": NEEDY})
+
+    with pytest.raises(ScenarioFaults, match=message):
+        chosen(config, load_registry({"NCSIM_PLUGINS": "fog"}))

@@ -95,10 +95,11 @@ def test_a_wrong_option_gives_one_flat_error_for_any_validator(with_antenna: Reg
     assert ["scenario", "config", "link_model", "options", "gain_dB"] in deepest
 
 
-def test_the_published_schema_is_up_to_date(first_party):
-    published = (SCHEMAS / "scenario.schema.json").read_text("utf-8")
+@pytest.mark.parametrize("kind", SchemaKind)
+def test_the_published_schemas_are_up_to_date(kind, first_party):
+    published = (SCHEMAS / f"{kind}.schema.json").read_text("utf-8")
 
-    assert published == schema_text(SchemaKind.SCENARIO), (
+    assert published == schema_text(kind), (
         f"run: NCSIM_PLUGINS={','.join(FIRST_PARTY)} ncsim schema --write schemas"
     )
 

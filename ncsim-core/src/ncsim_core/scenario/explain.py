@@ -46,7 +46,8 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
     schema = compose_schema(registry)
     if plain_fit(schema)(document):
         # Of what fits plainly, only free-form options could still hide an infinite number.
-        return list(_number_problems(document["scenario"].get("config"), CONFIG))
+        config = document["scenario"].get("config")
+        return [*_number_problems(config, CONFIG), *component_problems(config, registry)]
     problems: dict[tuple[Path, str], Problem] = {}
     findings = list(islice(_flat(_findings(document, schema)), MAX_FINDINGS))
     for error in findings:
@@ -56,8 +57,11 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
         message = f"has {MAX_FINDINGS} faults or more; only that many are listed"
         problems[(), message] = Problem((), message)
     told = {path for path, _ in problems}
-    infinite = [each for each in _number_problems(document) if each.path not in told]
-    return [*_without_echoes(list(problems.values())), *infinite]
+    others = [*_number_problems(document), *component_problems(_config_of(document), registry)]
+    return [
+        *_without_echoes(list(problems.values())),
+        *(each for each in others if each.path not in told),
+    ]
 
 
 def _number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:
@@ -73,6 +77,24 @@ def _number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:
         elif isinstance(value, float) and not math.isfinite(value):
             yield Problem(path, f"must be a finite number, not {value}", str(value))
         waiting += [((*path, step), child) for step, child in children]
+
+
+def _config_of(document: Data) -> Data:
+    scenario = document.get("scenario")
+    return scenario.get("config") if isinstance(scenario, dict) else None
+
+
+def component_problems(config: Data, registry: Registry) -> Iterator[Problem]:
+    """Yield every component that is named and cannot be had, and why."""
+    for key, row in config.items() if isinstance(config, dict) else ():
+        kind = KIND_BY_CONFIG_KEY.get(key)
+        path: Path = (*CONFIG, key, "type") if isinstance(row, dict) else (*CONFIG, key)
+        name = row.get("type") if isinstance(row, dict) else row
+        if kind is not None and isinstance(name, str):
+            try:
+                registry.find(kind, name)
+            except PluginError as error:
+                yield Problem(path, str(error), shown(name))
 
 
 def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ncsim_core.errors import PluginError
 from ncsim_core.plugins import KINDS
 from ncsim_core.registry import Registry
 from ncsim_core.scenario.explain import CONFIG, KIND_BY_CONFIG_KEY
 from ncsim_core.scenario.faults import Data, Path
-from ncsim_core.scenario.resolution import component_name, default_name, wants_radio
+from ncsim_core.scenario.resolution import Undecided, component_name, default_name, wants_radio
 
 _LINK_MODEL = KINDS["link_model"].config_key
 _INTERFERENCE = KINDS["interference_model"].config_key
@@ -51,8 +52,19 @@ def _with_link_model_kept(
     name = component_name(rows.get(_INTERFERENCE))
     known = registry.spellings("interference_model")
     if (name is None or name in known) and wants_radio(rows, registry):
-        return {**rows, _LINK_MODEL: default_name("link_model", rows, 1, registry)}
+        link_model = _default_or_none("link_model", rows, 1, registry)
+        return {**rows, _LINK_MODEL: link_model} if link_model else rows
     return rows
+
+
+def _default_or_none(
+    kind: str, rows: Mapping[str, Any], dag_count: int, registry: Registry
+) -> str | None:
+    """Return the default component, or ``None`` where a fault is about to say why there is none."""
+    try:
+        return default_name(kind, rows, dag_count, registry)
+    except (PluginError, Undecided):
+        return None
 
 
 def _with_value(
@@ -64,7 +76,8 @@ def _with_value(
     row = rows.get(key)
     kind = KIND_BY_CONFIG_KEY.get(key)
     if kind is not None and not isinstance(row, dict):
-        row = {"type": component_name(row) or default_name(kind, rows, dag_count, registry)}
+        name = component_name(row) or _default_or_none(kind, rows, dag_count, registry)
+        row = {"type": name} if name else {}
     return {**rows, key: _nested(row, inner, value)}
 
 
