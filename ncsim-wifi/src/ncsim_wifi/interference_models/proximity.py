@@ -58,7 +58,8 @@ class ProximityModel(InterferenceModel):
 
     @override
     def factors(self, links: Sequence[LinkIndex], active: Collection[LinkIndex]) -> FloatArray:
-        return np.reciprocal(self._crowd(links, active))
+        shares: FloatArray = 1.0 / self._crowd(links, active)
+        return shares
 
     @override
     def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
@@ -73,4 +74,5 @@ class ProximityModel(InterferenceModel):
 
     def _crowd(self, links: Sequence[LinkIndex], active: Collection[LinkIndex]) -> FloatArray:
         near = self._is_near[np.ix_(list(links), list(active))]
-        return np.sum(near, axis=1, dtype=np.float64)
+        crowd: FloatArray = near.sum(axis=1, dtype=np.float64)
+        return crowd

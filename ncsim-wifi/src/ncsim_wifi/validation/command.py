@@ -1,0 +1,94 @@
+"""``ncsim validate-model``: does the radio model still do what the paper says?"""
+
+import json
+from collections.abc import Iterable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from ncsim_wifi.validation.rows import Row
+
+EXIT_FAILED = 2
+
+app = typer.Typer(rich_markup_mode=None, add_completion=False, pretty_exceptions_enable=False)
+
+
+class StageName(StrEnum):
+    """The three stages of validation."""
+
+    INTERNAL = "internal"
+    LITERATURE = "literature"
+    PACKET = "packet"
+
+
+@app.command()
+def validate_model(
+    stage: Annotated[
+        list[StageName] | None, typer.Option(help="Run this stage only; may be repeated.")
+    ] = None,
+    as_json: Annotated[  # noqa: FBT002 - typer declares flags this way
+        bool, typer.Option("--json", help="Print rows as JSON.")
+    ] = False,
+    plots: Annotated[
+        Path | None, typer.Option(help="Write the figures into this folder (needs matplotlib).")
+    ] = None,
+) -> None:
+    """Compare the radio model with its definitions, with Bianchi (2000) and with ns-3.
+
+    Prints expected and measured, error and verdict row by row. "differs" marks a comparison with
+    packets in which the paper states an error; that the error is the stated one is a row of
+    its own. Exits with 2 if a row fails.
+
+    Example: ncsim validate-model --stage literature
+    """
+    chosen = stage or list(StageName)
+    rows = [row for each in chosen for row in rows_of(each)]
+    if as_json:
+        typer.echo(json.dumps([row.to_dict() for row in rows], indent=2))
+    else:
+        _print_tables(chosen, rows)
+    if plots is not None:
+        _write_figures(plots)
+    if any(row.verdict == "FAIL" for row in rows):
+        raise typer.Exit(EXIT_FAILED)
+
+
+def rows_of(stage: StageName) -> "Iterable[Row]":
+    """Return the comparisons of a stage."""
+    from ncsim_wifi.validation import internal, literature, packet
+
+    match stage:
+        case StageName.INTERNAL:
+            return internal.rows()
+        case StageName.LITERATURE:
+            return literature.rows()
+        case StageName.PACKET:
+            return packet.rows()
+
+
+def _print_tables(stages: "Iterable[StageName]", rows: "list[Row]") -> None:
+    from ncsim_wifi.validation.rows import table_text
+
+    for number, stage in enumerate(stages):
+        of_stage = [row for row in rows if row.stage == stage]
+        typer.echo(("\n" if number else "") + f"== {stage} ==")
+        typer.echo(table_text(of_stage))
+        counts = {
+            verdict: sum(row.verdict == verdict for row in of_stage)
+            for verdict in ("pass", "FAIL", "differs")
+        }
+        told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
+        typer.echo(f"{len(of_stage)} comparisons: {told}")
+
+
+def _write_figures(folder: Path) -> None:
+    try:
+        from ncsim_wifi.validation.figures import write_figures
+    except ImportError as error:
+        typer.echo(f"--plots needs matplotlib ({error}): pip install 'ncsim-wifi[plots]'", err=True)
+        raise typer.Exit(1) from None
+    for path in write_figures(folder):
+        typer.echo(f"wrote {path}", err=True)
