@@ -1,4 +1,5 @@
 import pytest
+import yaml
 from ncsim_core.scenario.positions import MAX_DEPTH, Span, read_yaml
 
 
@@ -61,3 +62,11 @@ def test_forms_that_no_scenario_needs_are_refused(text, message):
 
 def test_a_million_brackets_do_no_harm():
     assert slips_of("[" * 1_000_000) == [f"nested more than {MAX_DEPTH} levels deep"]
+
+
+def test_without_the_c_library_the_reading_is_the_same(monkeypatch):
+    text = "# über\na: &x [1, 'ö', {b: 12:30}]\nc: *x\n"
+    fast = read_yaml(text, with_positions=True)
+    monkeypatch.delattr(yaml, "CSafeLoader", raising=False)
+
+    assert read_yaml(text, with_positions=True) == fast
