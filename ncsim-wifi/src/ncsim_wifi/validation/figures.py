@@ -77,13 +77,7 @@ def experiment_1() -> Figure:
 def experiment_2() -> Figure:
     """Return the rate of two parallel links against separation (Figure ``fig:exp2``)."""
     figure, (axes,) = _panels(1)
-    separations_m = np.linspace(5.0, 200.0, 800)
-    axes.plot(
-        separations_m,
-        [fluid.rates_MBps((0, 1), parallel(2, float(s)))[0] for s in separations_m],
-        color=MODEL,
-        label="analytical",
-    )
+    _draw(axes, _curve_MBps(fluid.effective_rate_factor), "-", MODEL, "analytical")
     axes.plot(
         EXP2_SEPARATIONS_m,
         [measure(parallel(2, s)).mean_rate_MBps(0) for s in EXP2_SEPARATIONS_m],
@@ -131,11 +125,18 @@ def ns3() -> Figure:
     _label(left, "(a) contention, 5 m spacing", "links", "goodput per link (MB/s)")
     _draw(right, packets["two_links_by_separation_m"], "s", PACKETS, "ns-3")
     captured = predicted_separation_MBps(FIXED_CAPTURE)
-    _draw(right, captured, "D-", SECOND, "ncsim, fixed_capture")
-    _draw(right, predicted_separation_MBps("csma_bianchi"), ":", MODEL, "ncsim, effective_rate")
+    _draw(right, captured, "D", SECOND, "ncsim, fixed_capture")
+    _draw(right, _curve_MBps(fluid.fixed_capture_factor), "-", SECOND, "")
+    _draw(right, _curve_MBps(fluid.effective_rate_factor), ":", MODEL, "ncsim, effective_rate")
     _mark_sensing_range(right)
     _label(right, "(b) two links", "separation (m)", "goodput per link (MB/s)")
     return figure
+
+
+def _curve_MBps(factor: fluid.Factor) -> dict[str, float]:
+    """Return the rate of one of two parallel links at many separations."""
+    separations_m = np.linspace(5.0, 200.0, 781).tolist()
+    return {str(at): fluid.rates_MBps((0, 1), parallel(2, at), factor)[0] for at in separations_m}
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes]]:
@@ -150,7 +151,7 @@ def _draw(axes: Axes, values: Mapping[str, float], style: str, colour: str, labe
         style,
         color=colour,
         markersize=5,
-        label=label,
+        label=label or None,
     )
 
 
