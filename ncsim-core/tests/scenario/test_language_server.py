@@ -15,8 +15,8 @@ import pytest
 from ncsim_core.registry import load_registry
 from ncsim_core.scenario import ScenarioFaults, parse_scenario
 from ncsim_core.scenario.explain import schema_problems
-from ncsim_core.scenario.positions import read_yaml
 from ncsim_core.scenario.schema import compose_schema
+from ncsim_core.scenario.yaml_reader import read_yaml
 
 SCHEMA = Path(__file__).parents[3] / "schemas" / "scenario.schema.json"
 SERVER = os.environ.get("YAML_LANGUAGE_SERVER") or shutil.which("yaml-language-server")

@@ -4,7 +4,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-from ncsim_core.scenario.positions import read_yaml
+from ncsim_core.scenario.yaml_reader import read_yaml
 from ncsim_core.scenario.yaml_text import dump_yaml, plain_value
 
 plain_data = st.recursive(

@@ -1,11 +1,9 @@
-"""Schema errors in the words of the user: what is wrong, and what was probably meant."""
+"""Finds in what a document departs from the schema, each departure once and at its place."""
 
-import difflib
 import math
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
-from typing import Any, TypeAlias
+from typing import Any
 
 from ncsim_core.errors import PluginError
 from ncsim_core.plugins import KINDS
@@ -13,32 +11,13 @@ from ncsim_core.registry import Registry
 from ncsim_core.scenario.faults import Data, Path, Problem, shown
 from ncsim_core.scenario.plain_fit import plain_fit
 from ncsim_core.scenario.schema import compose_schema
-
-Finding: TypeAlias = Any
-"""A ``jsonschema.ValidationError``, whose fields depend on the keyword that failed."""
+from ncsim_core.scenario.wording import Finding, worded
 
 KIND_BY_CONFIG_KEY = {kind.config_key: kind.name for kind in KINDS.values()}
 
 CONFIG: Path = ("scenario", "config")
 MAX_FINDINGS = 1000
 """Departures from the schema that are explained; each costs a millisecond."""
-
-_TYPE_WORDS = {
-    "object": "a mapping",
-    "array": "a list",
-    "string": "text",
-    "number": "a number",
-    "integer": "a whole number",
-    "boolean": "true or false",
-    "null": "nothing",
-}
-_BOOLEAN_WORDS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false"}
-_BOUND_WORDS = {
-    "minimum": "at least",
-    "maximum": "at most",
-    "exclusiveMinimum": "greater than",
-    "exclusiveMaximum": "less than",
-}
 
 
 def schema_problems(document: Data, registry: Registry) -> list[Problem]:
@@ -97,11 +76,6 @@ def component_problems(config: Data, registry: Registry) -> Iterator[Problem]:
                 yield Problem(path, str(error), shown(name))
 
 
-def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:
-    """Return the candidate that was probably meant by ``word``."""
-    return next(iter(difflib.get_close_matches(str(word), sorted(candidates), n=1)), None)
-
-
 def _findings(document: Data, schema: Mapping[str, Any]) -> Iterator[Finding]:
     """Yield what a draft-07 validator finds; it passes over list items that plainly fit."""
     from jsonschema import Draft7Validator
@@ -144,10 +118,7 @@ def _problems_of(error: Finding, registry: Registry) -> Iterable[Problem]:
     kind = _component_kind(path)
     if kind is not None and error.validator in {"anyOf", "enum", "pattern"}:
         return [_component_problem(path, kind, error, registry)]
-    explain = _EXPLAINERS.get(str(error.validator))
-    if explain is None:
-        return [Problem(path, error.message, shown(error.instance))]
-    return explain(path, error)
+    return worded(path, error)
 
 
 def _component_kind(path: Path) -> str | None:
@@ -168,97 +139,6 @@ def _component_problem(path: Path, kind: str, error: Finding, registry: Registry
     except PluginError as unknown:
         return Problem(path, str(unknown), shown(name))
     return Problem(path, error.message, shown(name))
-
-
-def _unknown_keys(path: Path, error: Finding) -> Iterable[Problem]:
-    known = error.schema.get("properties", {})
-    for key in error.instance:
-        if key not in known:
-            yield _unknown_key(path, key, [each for each in known if each != "$schema"])
-
-
-def _unknown_key(path: Path, key: str, known: list[str]) -> Problem:
-    meant = did_you_mean(key, known)
-    listing = f"; known here: {', '.join(known) or 'none'}" if meant is None else ""
-    return Problem((*path, key), f"unknown key {key!r}{listing}", key, meant, is_about_key=True)
-
-
-def _missing_keys(path: Path, error: Finding) -> Iterable[Problem]:
-    missing = [key for key in error.validator_value if key not in error.instance]
-    for key in missing:
-        yield Problem(path, f"{key!r} is missing")
-
-
-def _wrong_type(path: Path, error: Finding) -> Iterable[Problem]:
-    wanted = error.validator_value
-    names = [wanted] if isinstance(wanted, str) else wanted
-    expected = " or ".join(_TYPE_WORDS.get(name, name) for name in names)
-    found = error.instance
-    article = "the text " if isinstance(found, str) else ""
-    message = f"must be {expected}, not {article}{shown(found)}{_advice(names, found)}"
-    yield Problem(path, message, shown(found), _meant_value(names, found))
-
-
-def _advice(wanted: list[str], found: object) -> str:
-    if "string" in wanted and isinstance(found, bool | int | float):
-        return "; put it in quotes"
-    if isinstance(found, str) and {"number", "integer"} & set(wanted):
-        return _number_advice(found)
-    return ""
-
-
-def _number_advice(text: str) -> str:
-    """Return why a word that looks like a number is none."""
-    if re.fullmatch(r"[-+]?\d+(:\d+)+(\.\d*)?", text):
-        return " (write a time as a plain number of seconds)"
-    if re.fullmatch(r"[-+]?0[0-9xob][0-9a-fA-F]*", text):
-        return " (a leading zero means octal or hexadecimal to some readers; write a plain number)"
-    if re.fullmatch(r"[-+]?[\d_,]+(\.\d*)?", text) and ("_" in text or "," in text):
-        return " (write digits without separators)"
-    if re.fullmatch(r"[-+]?\d+(\.\d*)?([eE][-+]?\d+)?", text):
-        return " (remove the quotes)"
-    if re.match(r"[-+]?\d", text):
-        return " (write the number without a unit)"
-    return ""
-
-
-def _meant_value(wanted: list[str], found: object) -> str | None:
-    if "boolean" in wanted and isinstance(found, str):
-        return _BOOLEAN_WORDS.get(found.lower())
-    return None
-
-
-def _not_a_choice(path: Path, error: Finding) -> Iterable[Problem]:
-    choices = [str(choice) for choice in error.validator_value]
-    meant = did_you_mean(error.instance, choices)
-    message = f"must be one of {', '.join(choices)}, not {shown(error.instance)}"
-    yield Problem(path, message, shown(error.instance), meant)
-
-
-def _out_of_bounds(path: Path, error: Finding) -> Iterable[Problem]:
-    words = _BOUND_WORDS[str(error.validator)]
-    message = f"must be {words} {error.validator_value}, not {shown(error.instance)}"
-    yield Problem(path, message, shown(error.instance))
-
-
-def _too_short(path: Path, error: Finding) -> Iterable[Problem]:
-    yield Problem(path, f"needs at least {error.validator_value}, has {len(error.instance)}")
-
-
-def _wrong_text(path: Path, error: Finding) -> Iterable[Problem]:
-    reason = "must not be empty" if error.instance == "" else "must be one line of plain text"
-    yield Problem(path, f"{reason}, not {shown(error.instance)}", shown(error.instance))
-
-
-_EXPLAINERS: Mapping[str, Callable[[Path, Finding], Iterable[Problem]]] = {
-    "additionalProperties": _unknown_keys,
-    "required": _missing_keys,
-    "type": _wrong_type,
-    "enum": _not_a_choice,
-    "minItems": _too_short,
-    "pattern": _wrong_text,
-    **dict.fromkeys(_BOUND_WORDS, _out_of_bounds),
-}
 
 
 def _without_echoes(problems: list[Problem]) -> list[Problem]:

@@ -140,13 +140,18 @@ def _built(
     return Scenario(
         name=rows.get("name", default_name),
         description=rows.get("description", ""),
-        network=Network(
-            nodes=tuple(map(_node, rows["network"]["nodes"])),
-            links=tuple(map(_link, rows["network"].get("links", ()))),
-        ),
-        injections=tuple(map(_injection, rows["dags"])),
+        network=network_from_rows(rows["network"]),
+        injections=tuple(map(injection_from_row, rows["dags"])),
         config=config,
         notes=notes,
+    )
+
+
+def network_from_rows(rows: Mapping[str, Any]) -> Network:
+    """Return the network in the checked rows of a file."""
+    return Network(
+        nodes=tuple(map(_node, rows["nodes"])),
+        links=tuple(map(_link, rows.get("links", ()))),
     )
 
 
@@ -168,7 +173,8 @@ def _link(row: Mapping[str, Any]) -> Link:
     )
 
 
-def _injection(row: Mapping[str, Any]) -> Injection:
+def injection_from_row(row: Mapping[str, Any]) -> Injection:
+    """Return the DAG and its time in a checked row of a file."""
     dag = DAG(
         id=DagId(row["id"]),
         tasks=tuple(map(_task, row["tasks"])),

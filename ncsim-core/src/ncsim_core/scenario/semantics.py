@@ -11,10 +11,10 @@ from typing import Any, TypeAlias
 
 from ncsim_core.plugins import KINDS
 from ncsim_core.registry import Registry
-from ncsim_core.scenario.explain import did_you_mean
 from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
 from ncsim_core.scenario.model import Config
 from ncsim_core.scenario.resolution import RADIO
+from ncsim_core.scenario.wording import did_you_mean
 
 Row: TypeAlias = Mapping[str, Any]
 

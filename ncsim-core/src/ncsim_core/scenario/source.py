@@ -17,7 +17,8 @@ from ncsim_core.scenario.faults import (
     original_path,
     path_text,
 )
-from ncsim_core.scenario.positions import Positions, Slip, Span, read_yaml
+from ncsim_core.scenario.positions import Positions, Slip, Span
+from ncsim_core.scenario.yaml_reader import read_yaml
 
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _BYTE_ORDER_MARKS = {b"\xff\xfe\x00\x00": "UTF-32", b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16"}

@@ -1,6 +1,7 @@
 import pytest
 import yaml
-from ncsim_core.scenario.positions import MAX_DEPTH, Span, read_yaml
+from ncsim_core.scenario.positions import Span
+from ncsim_core.scenario.yaml_reader import MAX_DEPTH, read_yaml
 
 
 def slips_of(text):
