@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from ncsim_core.errors import NcsimError, PluginError
-from ncsim_core.network import Network, NodeIndex, Route, route_fault
+from ncsim_core.network import LinkIndex, Network, NodeIndex, Route, route_fault
 
 
 class RoutingModel(ABC):
@@ -28,7 +28,7 @@ class RoutingModel(ABC):
 
 
 class RouteTable:
-    """The routes of one network under one model, worked out once per source and checked.
+    """The routes of one network under one model, worked out once per source, checked when used.
 
     Args:
         model: The routing model.
@@ -40,7 +40,8 @@ class RouteTable:
         self._model = model
         self._network = network
         self._label = label or type(model).__name__
-        self._rows: dict[NodeIndex, tuple[Route | None, ...]] = {}
+        self._rows: dict[NodeIndex, Sequence[Route | None]] = {}
+        self._checked: dict[tuple[NodeIndex, NodeIndex], Route | None] = {}
 
     def route(self, source: NodeIndex, target: NodeIndex) -> Route | None:
         """Return the route between two nodes, ``None`` if there is none.
@@ -48,28 +49,38 @@ class RouteTable:
         Raises:
             PluginError: The model answered with something that is no route.
         """
-        row = self._rows.get(source)
-        if row is None:
-            row = self._rows[source] = self._checked_row(source)
-        return row[target]
+        ends = (source, target)
+        if ends not in self._checked:
+            row = self._rows.get(source)
+            if row is None:
+                row = self._rows[source] = self._row(source)
+            self._checked[ends] = self._checked_route(source, target, row[target])
+        return self._checked[ends]
 
-    def _checked_row(self, source: NodeIndex) -> tuple[Route | None, ...]:
-        network = self._network
+    def _row(self, source: NodeIndex) -> Sequence[Route | None]:
+        """Return the model's answers for one source; they are checked when they are asked for."""
         try:
-            answers = self._model.routes_from(source, network)
+            answers = self._model.routes_from(source, self._network)
         except NcsimError:
             raise
         except Exception as error:
             raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
-        if len(answers) != len(network.nodes):
+        if len(answers) != len(self._network.nodes):
             raise PluginError(
                 f"{self._label}: routes_from() gave {len(answers)} routes "
-                f"for {len(network.nodes)} nodes"
+                f"for {len(self._network.nodes)} nodes"
             )
-        row = tuple(None if route is None else tuple(route) for route in answers)
-        for target, route in enumerate(row):
-            fault = None if route is None else route_fault(route, source, target, network)
-            if fault:
-                ends = f"{network.nodes[source].id!r} to {network.nodes[target].id!r}"
-                raise PluginError(f"{self._label}: the route from {ends} is wrong: {fault}")
-        return row
+        return answers
+
+    def _checked_route(
+        self, source: NodeIndex, target: NodeIndex, answer: Sequence[LinkIndex] | None
+    ) -> Route | None:
+        if answer is None:
+            return None
+        route = tuple(answer)
+        fault = route_fault(route, source, target, self._network)
+        if fault:
+            nodes = self._network.nodes
+            ends = f"{nodes[source].id!r} to {nodes[target].id!r}"
+            raise PluginError(f"{self._label}: the route from {ends} is wrong: {fault}")
+        return route
