@@ -99,5 +99,5 @@ def test_a_faulty_file_of_ten_thousand_rows_is_reported_in_part(core: Registry):
         parse_scenario(text, registry=core)
 
     assert len(caught.value.faults) == 1001
-    assert "has 1000 faults or more" in str(caught.value)
+    assert "only the first 1000 were looked at" in str(caught.value)
     assert "... and 951 more faults" in str(caught.value)

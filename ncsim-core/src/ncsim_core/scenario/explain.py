@@ -33,7 +33,7 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
         for problem in _problems_of(error, registry):
             problems.setdefault((problem.path, problem.message), problem)
     if len(findings) == MAX_FINDINGS:
-        message = f"has {MAX_FINDINGS} faults or more; only that many are listed"
+        message = f"there may be more faults; only the first {MAX_FINDINGS} were looked at"
         problems[(), message] = Problem((), message)
     told = {path for path, _ in problems}
     others = [*_number_problems(document), *component_problems(_config_of(document), registry)]
