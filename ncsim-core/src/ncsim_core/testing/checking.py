@@ -31,6 +31,9 @@ CheckBody = TypeVar("CheckBody", bound=Callable[..., None])
 
 PREFIX = "check_"
 
+ENOUGH_s = 5.0
+"""Time after which a check that has not failed draws no further examples."""
+
 
 @dataclass(frozen=True)
 class Check:
@@ -139,39 +142,65 @@ def result_of(suite: ComponentChecks, one: Check, expected: Mapping[str, str]) -
         return finish("skipped", f"does not declare {one.capability}")
     reason = expected.get(one.name)
     try:
-        run(suite, one, subject)
+        note = run(suite, one, subject)
     except (Exception, SystemExit) as error:  # a check of a stranger's code reports, never breaks
         if reason is not None:
             return finish("expected_failure", reason, error)
         return finish("failed", described(error), error)
     if reason is not None:
         return finish("unexpected_pass", f"expected to fail: {reason}")
-    return finish("passed")
+    return finish("passed", note)
 
 
-def run(suite: ComponentChecks, one: Check, subject: Subject) -> None:
-    """Run one check and let what it raises pass."""
+def run(suite: ComponentChecks, one: Check, subject: Subject) -> str:
+    """Run one check, let what it raises pass, and return what is worth a note.
+
+    A component so slow that the examples take longer than ``ENOUGH_s`` gets fewer of them.
+    """
     if not one.is_drawn:
         one.body(suite, subject)
-        return
+        return ""
     known = suite.strategies()
     drawn = st.fixed_dictionaries({name: known[name] for name in one.drawn})
+    patience = _Patience()
 
     def on_example(
         options: Mapping[str, object],
         sections: Mapping[str, Mapping[str, object]],
         values: Mapping[str, object],
     ) -> None:
+        if patience.is_over():
+            return
         chosen = Subject(subject.registry, subject.registered, options, sections)
         try:
             one.body(suite, chosen, **{name: _settled(chosen, v) for name, v in values.items()})
         except (ScenarioError, ModelScopeError):
             reject()  # a component may say that an input is not for it
+        except BaseException:
+            patience.has_failed = True
+            raise
 
     test = given(
         options=suite.option_values(subject), sections=suite.section_values(subject), values=drawn
     )(on_example)
     steady_settings(suite.examples)(test)()
+    return f"stopped after {patience.examples} examples, it is slow" if patience.is_over() else ""
+
+
+class _Patience:
+    """Says when to leave it at the examples so far; never while a failure is being reduced."""
+
+    def __init__(self) -> None:
+        self.has_failed = False
+        self.examples = 0
+        self._until_s = time.perf_counter() + ENOUGH_s
+
+    def is_over(self) -> bool:
+        """Return whether time is up, and count one more example if it is not."""
+        if self.examples and not self.has_failed and time.perf_counter() > self._until_s:
+            return True
+        self.examples += 1
+        return False
 
 
 def check_component(

@@ -57,7 +57,9 @@ def _values(schema: Mapping[str, object]) -> SearchStrategy[object]:
             return st.one_of([_values(each) for each in branches])
     types = schema.get("type", "object")
     names = cast("list[str]", types if isinstance(types, list) else [types])
-    drawn = st.one_of([_of_type(name, schema) for name in names])
+    if "default" in schema and "pattern" not in schema:  # free text means something: keep to it
+        names = [name for name in names if name != "string"]
+    drawn: SearchStrategy[object] = st.one_of([_of_type(name, schema) for name in names])
     return st.just(schema["default"]) | drawn if "default" in schema else drawn
 
 

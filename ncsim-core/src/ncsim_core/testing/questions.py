@@ -125,7 +125,8 @@ def fixed_cases(kind: str) -> list[Case]:
         pins = {k: k % 4 for k in range(6)}
         return [
             *(Case(each, dag=builders.fork_join(8, cost=150.0)) for each in networks),
-            *(Case(each, dag=builders.fork_join(4, pins=pins)) for each in networks[:1]),
+            Case(networks[0], dag=builders.fork_join(4, pins=pins)),
+            Case(networks[0], dag=builders.chain(3, cost=150.0)),
         ]
     return [Case(each) for each in networks]
 

@@ -1,0 +1,262 @@
+"""``ncsim plugins``: what is installed, is it right, and a start for a new one."""
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ncsim_core.errors import PluginError, ScenarioError
+from ncsim_core.plugins import KINDS
+
+if TYPE_CHECKING:
+    from ncsim_core.registry import PluginRecord, RegisteredComponent, Registry
+    from ncsim_core.testing import CheckResult
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Look at installed plug-ins, check them, and start a new one.",
+)
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.command("list")
+def list_plugins(as_json: AsJson = False) -> None:
+    """List plug-ins with their components, and why any of them cannot be used.
+
+    Example: ncsim plugins list
+    """
+    from ncsim_core.registry import get_registry
+
+    registry = get_registry()
+    plugins = [_plugin_as_data(registry, record) for record in registry.plugins]
+    if as_json:
+        typer.echo(json.dumps({"plugins": plugins}, indent=2))
+        return
+    for plugin in plugins:
+        typer.echo("\n".join(_plugin_lines(plugin)))
+
+
+@app.command()
+def show(kind: str, name: str, as_json: AsJson = False) -> None:
+    """Show one component: where it comes from, and a table of its options.
+
+    KIND is a kind such as routing_model, or its key in a scenario such as routing.
+
+    Example: ncsim plugins show scheduler round_robin
+    """
+    from ncsim_core.cli.option_table import option_table
+    from ncsim_core.registry import get_registry
+
+    registry = get_registry()
+    registered = registry.lookup(_kind_of(kind), name)
+    data = _component_as_data(registered)
+    schema = registry.options_schema(registered)
+    if as_json:
+        typer.echo(json.dumps(data | {"options": schema}, indent=2))
+        return
+    for label in ("qualified_name", "version", "summary", "source", "factory", "capabilities"):
+        value = data[label]
+        text = ", ".join(value) if isinstance(value, list) else str(value)
+        typer.echo(f"{label.replace('_', ' ')}: {text or '-'}")
+    for fault in _faults_of(data):
+        typer.echo(f"cannot be used: {fault}")
+    typer.echo("\n" + option_table(schema))
+
+
+@app.command()
+def check(
+    distribution: Annotated[
+        str | None, typer.Argument(help="Package to check; all of them if left out.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run the conformance checks of installed plug-ins; a failure gives exit code 1.
+
+    Example: ncsim plugins check ncsim-routing
+    """
+    from ncsim_core.registry import get_registry
+
+    registry = get_registry()
+    records = _records_to_check(registry, distribution)
+    results: list[CheckResult] = []
+    for record in records:
+        for label, some in _checked(registry, record):
+            results += some
+            if not as_json:
+                typer.echo("\n".join(_result_lines(label, some)))
+    if as_json:
+        typer.echo(json.dumps([_result_as_data(each) for each in results], indent=2))
+    else:
+        typer.echo(f"in all: {_counts(results)}")
+    if any(each.is_bad for each in results):
+        raise typer.Exit(1)
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the package, such as ncsim-lookahead.")],
+    kind: Annotated[
+        str, typer.Option("--kind", help=f"What it is to be: {', '.join(KINDS)}.")
+    ] = "scheduler",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder to write; by default ./NAME.")
+    ] = None,
+) -> None:
+    """Write a small, complete plug-in project that installs and passes its tests.
+
+    Example: ncsim plugins new ncsim-lookahead --kind scheduler
+    """
+    from ncsim_core.cli.plugin_project import write_project
+
+    folder = output or Path(name)
+    files = write_project(folder, name, _kind_of(kind))
+    typer.echo(f"wrote {len(files)} files to {folder}; next:")
+    typer.echo(f"  python -m pip install -e '{folder}[test]' && python -m pytest {folder}")
+
+
+def _kind_of(text: str) -> str:
+    """Return a kind from its name or from its key in a scenario.
+
+    Raises:
+        ScenarioError: It is neither.
+    """
+    by_key = {kind.config_key: kind.name for kind in KINDS.values()}
+    found = by_key.get(text, text)
+    if found not in KINDS:
+        raise ScenarioError(f"unknown kind {text!r}; the kinds are {', '.join(KINDS)}")
+    return found
+
+
+def _plugin_as_data(registry: "Registry", record: "PluginRecord") -> dict[str, object]:
+    components = [
+        _component_as_data(each)
+        for kind in KINDS
+        for each in registry.components(kind)
+        if each.distribution == record.distribution and record.status == "ok"
+    ]
+    sections = [
+        {"name": each.section.name, "summary": each.section.summary}
+        for each in registry.sections()
+        if each.distribution == record.distribution and record.status == "ok"
+    ]
+    return {
+        "distribution": record.distribution,
+        "version": record.version,
+        "api": record.api,
+        "status": record.status,
+        "detail": record.detail,
+        "components": components,
+        "sections": sections,
+    }
+
+
+def _component_as_data(registered: "RegisteredComponent") -> dict[str, object]:
+    from ncsim_core.registry.building import factory_fault
+
+    component = registered.component
+    return {
+        "kind": component.kind,
+        "name": component.name,
+        "qualified_name": registered.qualified_name,
+        "version": registered.version,
+        "summary": component.summary,
+        "source": component.source,
+        "factory": component.factory,
+        "capabilities": sorted(component.capabilities),
+        "missing_requirements": list(registered.missing_requirements),
+        "fault": factory_fault(registered) if registered.is_available else None,
+    }
+
+
+def _faults_of(component: dict[str, object]) -> Iterator[str]:
+    missing = component["missing_requirements"]
+    if isinstance(missing, list):
+        yield from (f"needs {each}" for each in missing)
+    if component["fault"]:
+        yield str(component["fault"])
+
+
+def _plugin_lines(plugin: dict[str, object]) -> Iterator[str]:
+    detail = f": {plugin['detail']}" if plugin["detail"] else ""
+    yield f"{plugin['distribution']} {plugin['version']}  {plugin['status']}{detail}"
+    components = plugin["components"]
+    for each in components if isinstance(components, list) else ():
+        yield f"  {each['kind']:<18} {each['name']:<24} {each['summary']}"
+        yield from (f"  {'':<18} {'':<24} cannot be used: {fault}" for fault in _faults_of(each))
+    sections = plugin["sections"]
+    for each in sections if isinstance(sections, list) else ():
+        yield f"  {'config section':<18} {each['name']:<24} {each['summary']}"
+
+
+def _records_to_check(registry: "Registry", distribution: str | None) -> list["PluginRecord"]:
+    from ncsim_core.registry.records import normalised
+
+    if distribution is None:
+        return [each for each in registry.plugins if each.status != "disabled"]
+    wanted = normalised(distribution)
+    found = [each for each in registry.plugins if each.distribution == wanted]
+    if not found:
+        installed = ", ".join(each.distribution for each in registry.plugins)
+        raise PluginError(f"no plug-in package {distribution!r}; installed: {installed}")
+    return found
+
+
+def _checked(
+    registry: "Registry", record: "PluginRecord"
+) -> Iterator[tuple[str, list["CheckResult"]]]:
+    """Yield a label and the results of a plug-in as a whole, then of each component.
+
+    Raises:
+        PluginError: The extra that brings the checks is not installed.
+    """
+    try:
+        from ncsim_core.testing import CheckResult, check_component
+        from ncsim_core.testing.suites.plugin import components_of, plugin_results
+    except ModuleNotFoundError as error:
+        raise PluginError(f"checks need {error.name}: pip install 'ncsim-core[testing]'") from error
+    yield f"{record.distribution} {record.version}", plugin_results(record.distribution, registry)
+    if record.status != "ok":
+        return
+    for each in components_of(registry, record.distribution):
+        label = f"{each.component.kind} {each.qualified_name}"
+        if each.is_available:
+            yield (
+                label,
+                check_component(each.component.kind, each.qualified_name, registry=registry),
+            )
+        else:
+            needs = f"needs {', '.join(each.missing_requirements)}"
+            yield label, [CheckResult(each.qualified_name, "is_available", "skipped", needs)]
+
+
+def _result_lines(label: str, results: Sequence["CheckResult"]) -> Iterator[str]:
+    yield f"{label}: {_counts(results)}"
+    for each in results:
+        if each.status != "passed":
+            detail = each.detail.replace("\n", "\n      ")
+            yield f"    {each.status.replace('_', ' ')}: {each.check}: {detail}"
+
+
+def _counts(results: Sequence["CheckResult"]) -> str:
+    """Return for example ``12 run, 1 skipped, 0 expected failures, 0 failed``."""
+    by_status = Counter(each.status for each in results)
+    bad = sum(each.is_bad for each in results)
+    return (
+        f"{len(results) - by_status['skipped']} run, {by_status['skipped']} skipped, "
+        f"{by_status['expected_failure']} expected failures, {bad} failed"
+    )
+
+
+def _result_as_data(result: "CheckResult") -> dict[str, object]:
+    return {
+        "component": result.component,
+        "check": result.check,
+        "status": result.status,
+        "detail": result.detail,
+        "duration_s": round(result.duration_s, 6),
+    }

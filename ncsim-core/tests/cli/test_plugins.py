@@ -1,0 +1,226 @@
+"""``ncsim plugins``: list, show, check, new."""
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from ncsim_core.cli.plugins import app
+from ncsim_core.errors import ScenarioError, UnknownComponentError
+from ncsim_core.plugins import KINDS
+from ncsim_core.testing.fixtures import DECLARATION, FakeDist, fake_dist, write_dist
+from typer.testing import CliRunner, Result
+
+__all__ = ["fake_dist"]
+
+SCHEDULERS = """
+from ncsim_core.builtin.schedulers import RoundRobinScheduler
+from ncsim_core.workflow import PlacementPlan
+
+class Forgetful(RoundRobinScheduler):
+    def schedule(self, dag, snapshot):
+        plan = super().schedule(dag, snapshot)
+        return PlacementPlan(dict(list(plan.nodes.items())[1:]))
+"""
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(app, list(arguments))
+
+
+def declaring(*components: str) -> str:
+    listed = ", ".join(f"Component({each})" for each in components)
+    return f"{DECLARATION}\n@hookimpl\ndef ncsim_components():\n    return [{listed}]\n"
+
+
+def forgetful(fake_dist: FakeDist, extra: str = "") -> None:
+    component = f'"scheduler", "forgetful", "forgetful_code:Forgetful", "Forgets."{extra}'
+    fake_dist(
+        "forgetful-dist",
+        {"forgetful_declaration": declaring(component), "forgetful_code": SCHEDULERS},
+    )
+
+
+def test_list_shows_each_plugin_with_its_components():
+    output = run("list").output
+
+    assert "ncsim-core" in output
+    assert "Deals unpinned tasks out to the nodes in turn" in output
+
+
+def test_list_tells_why_a_plugin_or_component_cannot_be_used(fake_dist):
+    fake_dist("bad-dist", {"bad_declaration": "1 / 0"})
+    fake_dist(
+        "half-dist",
+        {
+            "half_declaration": declaring(
+                '"scheduler", "gone", "no_such_module:x", "Gone."',
+                '"scheduler", "needy", "m:f", "Needy.", requires=("no-such-package>=3",)',
+            )
+        },
+    )
+
+    output = run("list").output
+
+    assert "bad-dist 1.0  failed: ZeroDivisionError: division by zero" in output
+    assert "cannot import no_such_module:x" in output
+    assert "needs no-such-package>=3 (not installed)" in output
+
+
+def test_list_as_json_has_kinds_names_and_status():
+    plugins = json.loads(run("list", "--json").output)["plugins"]
+
+    core = plugins[0]
+    assert (core["distribution"], core["status"]) == ("ncsim-core", "ok")
+    assert {each["kind"] for each in core["components"]} == set(KINDS)
+
+
+def test_show_prints_a_table_of_options(fake_dist):
+    schema = """{"type": "object", "additionalProperties": False, "required": ["must"],
+        "properties": {
+            "depth": {"type": "integer", "minimum": 1, "default": 2, "description": "Levels."},
+            "mode": {"enum": ["a", "b"], "default": "a", "description": "How."},
+            "must": {"type": "number", "exclusiveMaximum": 5, "description": "In s."}}}"""
+    component = f'"scheduler", "mine", "m:f", "One line.", {schema}, source="Eq. 3"'
+    fake_dist("mine-dist", {"mine_declaration": declaring(component)})
+
+    lines = run("show", "scheduler", "mine").output.splitlines()
+
+    assert "qualified name: mine-dist/mine" in lines
+    assert "source: Eq. 3" in lines
+    table = [line.split() for line in lines[lines.index("") + 1 :]]
+    assert table == [
+        ["option", "type", "default", "bounds", "description"],
+        ["depth", "integer", "2", ">=", "1", "Levels."],
+        ["mode", "a", "|", "b", '"a"', "-", "How."],
+        ["must", "number", "required", "<", "5", "In", "s."],
+    ]
+
+
+def test_show_takes_the_key_of_a_scenario_for_a_kind():
+    assert "no options" in run("show", "routing", "direct").output
+
+
+def test_show_of_an_unknown_name_or_kind_says_what_there_is():
+    assert isinstance(run("show", "scheduler", "manuel").exception, UnknownComponentError)
+    assert isinstance(run("show", "planner", "manual").exception, ScenarioError)
+
+
+def test_check_of_core_passes_and_counts():
+    result = run("check", "ncsim-core")
+
+    assert result.exit_code == 0, result.output
+    assert "routing_model ncsim-core/direct: 14 run, 1 skipped" in result.output
+    assert "in all: " in result.output
+
+
+def test_check_fails_on_a_component_that_breaks_its_contract(fake_dist):
+    forgetful(fake_dist)
+
+    result = run("check", "Forgetful_Dist")
+
+    assert result.exit_code == 1
+    assert "failed: plan_is_total: missing {'T0'}" in result.output
+
+
+def test_check_counts_declared_expected_failures(fake_dist):
+    reasons = {"plan_is_total": "by design", "extremes_are_planned": "by design"}
+    forgetful(fake_dist, f", expected_failures={reasons}")
+
+    result = run("check", "forgetful-dist", "--json")
+
+    outcomes = {each["check"]: each["status"] for each in json.loads(result.output)}
+    assert result.exit_code == 0
+    assert outcomes["plan_is_total"] == "expected_failure"
+    assert outcomes["planned_nodes_exist"] == "passed"
+    assert outcomes["scaling_changes_nothing"] == "skipped"
+
+
+def test_check_fails_on_an_expected_failure_that_passes(fake_dist):
+    reasons = {
+        "plan_is_total": "by design",
+        "extremes_are_planned": "by design",
+        "planned_nodes_exist": "wrong",
+    }
+    forgetful(fake_dist, f", expected_failures={reasons}")
+
+    result = run("check", "forgetful-dist")
+
+    assert result.exit_code == 1
+    assert "unexpected pass: planned_nodes_exist" in result.output
+
+
+def test_check_of_a_plugin_that_does_not_load_fails_with_the_reason(fake_dist):
+    fake_dist("bad-dist", {"bad_declaration": "1 / 0"})
+
+    result = run("check", "bad-dist")
+
+    assert result.exit_code == 1
+    assert "failed: loads: failed: ZeroDivisionError" in result.output
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_new_project_passes_its_own_tests(kind, tmp_path):
+    name = f"ncsim-made-{kind.replace('_', '-')}"
+    project = tmp_path / name
+
+    assert run("new", name, "--kind", kind, "--output", str(project)).exit_code == 0
+
+    done = in_child(project, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(project))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " passed" in done.stdout
+
+
+def in_child(project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run Python where the project looks installed."""
+    points = tomllib.loads((project / "pyproject.toml").read_text())["project"]["entry-points"]
+    site = project.parent / "site"
+    write_dist(site, project.name, {}, entry_points=points["ncsim.plugins"])
+    path = os.pathsep.join([str(project / "src"), str(site)])
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=project,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.slow
+def test_new_project_installs_with_pip_and_is_found(tmp_path):
+    run("new", "ncsim-made", "--output", str(tmp_path / "made"))
+    python = str(tmp_path / "venv" / "bin" / "python")
+    own = [each for each in sys.path if each.endswith("site-packages")]
+    core = str(Path(__file__).parents[2] / "src")
+
+    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "venv")], check=True)
+    install = ["-m", "pip", "install", "-q", "--no-deps", "-e", str(tmp_path / "made")]
+    subprocess.run([python, *install], check=True)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([core, *own])}
+    done = subprocess.run(
+        [python, "-m", "pytest", "-q", str(tmp_path / "made")],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", ["Upper", "1st", "a--b", "a b", "../up"])
+def test_new_refuses_what_cannot_be_a_package_name(name, tmp_path):
+    result = run("new", name, "--output", str(tmp_path / "x"))
+
+    assert isinstance(result.exception, ScenarioError)
+    assert not (tmp_path / "x").exists()
+
+
+def test_new_overwrites_nothing(tmp_path):
+    (tmp_path / "precious").write_text("text")
+
+    assert isinstance(run("new", "mine", "-o", str(tmp_path)).exception, ScenarioError)
