@@ -72,8 +72,7 @@ def _losses_us(transfer: RunTransfer, run: RunTrace) -> list[float]:
     """Return the time lost to sharing, contention and hidden interference, unrounded."""
     totals = [0.0, 0.0, 0.0]
     solo_MBps = run.solo_MBps(transfer)
-    ends_us = [step.at_us for step in transfer.steps[1:]] + [transfer.ended_us or 0]
-    for step, end_us in zip(transfer.steps, ends_us, strict=True):
+    for step, end_us in run.rate_spans(transfer):
         lost_us = max(0.0, (end_us - step.at_us) * (1 - step.rate_MBps / solo_MBps))
         for index, weight in enumerate(_weights(step, run)):
             totals[index] += lost_us * weight

@@ -4,9 +4,10 @@
 both feed the same builder, so what is computed from either is equal.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 from ncsim_core.models import ComponentIdentity
@@ -175,6 +176,14 @@ class RunTrace:
         """Return the names of a dependency's ends."""
         transfer = self.transfers[number]
         return f"{self.task_label(transfer.source)} -> {self.tasks[transfer.target].id}"
+
+    def rate_spans(self, transfer: RunTransfer) -> Iterator[tuple[RateStep, int]]:
+        """Yield each rate of a transfer with the instant until which it held."""
+        last_us = self.end.ended_us if transfer.ended_us is None else transfer.ended_us
+        for step, following in pairwise(transfer.steps):
+            yield step, following.at_us
+        if transfer.steps:
+            yield transfer.steps[-1], last_us
 
     def solo_MBps(self, transfer: RunTransfer) -> float:
         """Return the rate of a transfer that has its route to itself: the least clean bandwidth."""

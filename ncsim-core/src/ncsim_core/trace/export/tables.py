@@ -9,7 +9,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 from ncsim_core.trace.files import write_atomically
 from ncsim_core.trace.records import TraceError
-from ncsim_core.trace.run_trace import RateStep, RunTask, RunTrace, RunTransfer
+from ncsim_core.trace.run_trace import RunTask, RunTrace
 from ncsim_core.units import s_from_us
 
 Cell: TypeAlias = str | float | int | bool | None
@@ -66,7 +66,7 @@ def _transfer_rows(run: RunTrace) -> Iterator[tuple[Cell, ...]]:
 
 def _rate_rows(run: RunTrace) -> Iterator[tuple[Cell, ...]]:
     for transfer in run.transfers:
-        for step, until_us in spans(transfer, run):
+        for step, until_us in run.rate_spans(transfer):
             yield (
                 transfer.number,
                 s_from_us(step.at_us),
@@ -80,13 +80,6 @@ def _rate_rows(run: RunTrace) -> Iterator[tuple[Cell, ...]]:
                 "start" if step.change == "s" else "end",
                 step.cause,
             )
-
-
-def spans(transfer: RunTransfer, run: RunTrace) -> Iterator[tuple[RateStep, int]]:
-    """Yield each rate of a transfer with the instant until which it held."""
-    last_us = run.end.ended_us if transfer.ended_us is None else transfer.ended_us
-    ends_us = [step.at_us for step in transfer.steps[1:]] + [last_us]
-    yield from zip(transfer.steps, ends_us, strict=bool(transfer.steps))
 
 
 TABLES: Final[Mapping[str, Table]] = {
