@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from ncsim_core.testing import InterferenceModelSuite, LinkModelSuite, PluginSuite
+from ncsim_core.testing import InterferenceModelSuite, LinkModelSuite, PluginSuite, SchedulerSuite
 
 
 class TestPlugin(PluginSuite):
@@ -28,3 +28,11 @@ class TestProximity(InterferenceModelSuite):
 
 class TestCsmaClique(InterferenceModelSuite):
     component = "csma_clique"
+
+
+class TestConflictAwareHeft(SchedulerSuite):
+    component = "conflict_aware_heft"
+
+
+class TestUniformDiscountHeft(SchedulerSuite):
+    component = "uniform_discount_heft"

@@ -53,6 +53,29 @@ def ncsim_components() -> Iterable[Component]:
                 ),
             },
         ),
+        *(
+            Component(
+                kind="scheduler",
+                name=name,
+                factory="ncsim_wifi.schedulers.discounted_heft:DiscountedHeftScheduler",
+                summary=summary,
+                params={"discount": discount},
+                capabilities=frozenset({"scale_invariant"}),
+                source="issue 3, item 9",
+            )
+            for name, discount, summary in (
+                (
+                    "conflict_aware_heft",
+                    "conflict_aware",
+                    "HEFT on link rates discounted by the airtime of their conflict neighbourhood.",
+                ),
+                (
+                    "uniform_discount_heft",
+                    "uniform",
+                    "HEFT on link rates all discounted by the mean of that discount.",
+                ),
+            )
+        ),
     ]
 
 

@@ -1,0 +1,1 @@
+"""Schedulers that plan with the conflict graph in mind."""
