@@ -1,0 +1,1 @@
+"""Plans one task ahead and counts hops."""

@@ -1,0 +1,5 @@
+from ncsim_core.testing import SchedulerSuite
+
+
+class TestLookahead(SchedulerSuite):
+    component = "lookahead"
