@@ -67,7 +67,7 @@ def main(args: Sequence[str] | None = None) -> None:
     sys.exit(exit_code_of(lambda: app(args=args, prog_name="ncsim", standalone_mode=False)))
 
 
-def exit_code_of(command: Callable[[], object]) -> int:  # noqa: PLR0911 - one for each way to end
+def exit_code_of(command: Callable[[], object]) -> int:  # noqa: C901, PLR0911 - flat
     """Return the exit code of a command, after printing what went wrong to stderr."""
     try:
         code = command()
