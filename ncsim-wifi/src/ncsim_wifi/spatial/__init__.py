@@ -1,0 +1,1 @@
+"""Saturated goodput of any set of active links: sensing, capture, hidden stations, back-off."""

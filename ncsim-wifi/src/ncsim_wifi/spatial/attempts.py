@@ -1,0 +1,104 @@
+"""How often stations try to send while the channel is clear.
+
+Source: MODEL 3.2.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.mac.timing import AIFS_us, RTS_us, SLOT_us
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.scene import Scene
+
+ACK_TIMEOUT_us = 45.0
+LEAST_OWN_WAIT = 0.35
+GAUSS_AT = 0.5 + 0.5 * np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
+GAUSS_WEIGHT = np.array([5.0, 8.0, 5.0]) / 18.0
+
+
+class Exchange(NamedTuple):
+    """How long the parts of an exchange take, by station.
+
+    Args:
+        on_air_us: T_u, from the start to the end of data.
+        overhead_us: ovh_u, from there until the sender may count again.
+        silent_us: b_u, from there until its neighbours may.
+        deviation_us: dev[u, w], how much longer w in particular stays silent.
+    """
+
+    on_air_us: FloatArray
+    overhead_us: FloatArray
+    silent_us: FloatArray
+    deviation_us: FloatArray
+
+    @property
+    def busy_us(self) -> FloatArray:
+        """Return for how long a frame of each station keeps others from counting."""
+        return self.on_air_us + self.silent_us
+
+
+class Attempts(NamedTuple):
+    """Attempts of each station.
+
+    Args:
+        same_slot: p[u, w], probability that w starts in the same slot as u.
+        rate_per_us: lambda, attempts per time in which the channel is clear.
+        activity: rho, mean time on air and after per clear time.
+    """
+
+    same_slot: FloatArray
+    rate_per_us: FloatArray
+    activity: FloatArray
+
+
+def first_in_line(same_slot: FloatArray) -> FloatArray:
+    """Return E[1 / (1 + colliders)] of each station.
+
+    Source: MODEL 3.2, share: the integral of prod (1 - p (1 - y)) by three Gauss points.
+    """
+    survivors = 1.0 - same_slot[:, :, None] * (1.0 - GAUSS_AT)
+    return np.asarray(survivors.prod(axis=1) @ GAUSS_WEIGHT)
+
+
+def clear_slot_rate_per_us(
+    tau: FloatArray, idle_slot: FloatArray, extra_us: FloatArray
+) -> FloatArray:
+    """Return lambda_0, the attempts per clear time, of stations that are always allowed to.
+
+    Source: MODEL 3.2.
+
+    Args:
+        tau: Probability of an attempt per decision.
+        idle_slot: P0, probability that nobody starts in a slot.
+        extra_us: x, mean extra silence per slot after frames of others.
+    """
+    idle_us = SLOT_us * idle_slot
+    return tau / np.maximum(idle_us + extra_us, idle_us / 2.0)
+
+
+def attempts_of(
+    scene: Scene, tau: FloatArray, clear: FloatArray, blocked: FloatArray, times: Exchange
+) -> Attempts:
+    """Return the attempts of all stations.
+
+    Args:
+        scene: The active links.
+        tau: Probability of an attempt per decision of each station.
+        clear: C of the occupancy.
+        blocked: B, how often summed power keeps each station silent.
+        times: How long exchanges take.
+    """
+    same_slot = scene.senses * (tau * (1.0 - blocked))[None, :] * clear
+    np.clip(same_slot, 0.0, 1.0, out=same_slot)
+    nobody = (1.0 - same_slot).prod(axis=1)
+    extra_us = (same_slot * times.deviation_us.T).sum(axis=1) * (1.0 - tau)
+    rate_0 = clear_slot_rate_per_us(tau, nobody * (1.0 - tau), extra_us) * (1.0 - blocked)
+    own_wait_us = 1.0 / rate_0 + times.overhead_us - times.silent_us
+    rate = 1.0 / np.maximum(own_wait_us, LEAST_OWN_WAIT / rate_0)
+    share = first_in_line(same_slot)
+    if not scene.settings.rts_cts:
+        return Attempts(same_slot, rate, rate * times.busy_us * share)
+    first = np.maximum(share - nobody, (1.0 - nobody) / 2.0)
+    in_vain_us = RTS_us + ACK_TIMEOUT_us + AIFS_us
+    return Attempts(same_slot, rate, rate * (nobody * times.busy_us + first * in_vain_us))

@@ -1,0 +1,48 @@
+"""Frames lost to stations that start in the same slot.
+
+Source: MODEL 2 (same-slot loss) and 3.5.
+"""
+
+import numpy as np
+
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.scene import Scene
+
+RTS_RATIO_dB = 7.0  # a control frame survives a collision above this ratio (MODEL 2)
+
+
+def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
+    """Return sync[l, w], the loss of a frame of link l when w starts in the same slot.
+
+    Source: MODEL 2.
+
+    Args:
+        scene: The active links.
+        noise_mW: Noise and far interferers of each link.
+    """
+    rows = np.arange(len(scene.links))[:, None]
+    ratio_dB = scene.ratio_dB(scene.at_receiver_mW.T + noise_mW[:, None], rows)
+    if scene.settings.rts_cts:
+        return np.where(ratio_dB < RTS_RATIO_dB, 1.0, 0.0)
+    loss = -np.expm1(-hazard(scene.scheme[:, None], ratio_dB))
+    return np.where(ratio_dB < scene.settings.preamble_ratio_dB, 1.0, loss)
+
+
+def base_success(
+    scene: Scene, noise_hazard: FloatArray, same_slot: FloatArray, loss: FloatArray
+) -> FloatArray:
+    """Return base_l, the part of frames that noise and same-slot collisions leave.
+
+    Source: MODEL 3.5.
+
+    Args:
+        scene: The active links.
+        noise_hazard: h_noise of each link.
+        same_slot: p[u, w].
+        loss: sync[l, w].
+    """
+    if not scene.settings.terms.same_slot_collisions:
+        return np.where(scene.is_alive, np.exp(-noise_hazard), 0.0)
+    survivors = (1.0 - same_slot[scene.station] * loss).prod(axis=1)
+    return np.where(scene.is_alive, np.exp(-noise_hazard) * survivors, 0.0)

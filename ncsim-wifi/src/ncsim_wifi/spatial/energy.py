@@ -1,0 +1,147 @@
+"""Stations that are too weak to be sensed one by one, and are sensed together.
+
+Source: MODEL 2 (energy sets) and 3.6.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
+from ncsim_wifi.spatial.relations import Hostile
+from ncsim_wifi.spatial.scene import Scene
+
+LARGEST_PROBABILITY = 0.97
+TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class EnergySets:
+    """For each station that weak ones can silence together: which of them, and when.
+
+    Args:
+        station: The stations silenced.
+        row_of: For every station its row here, -1 if it has none.
+        member: The weak stations, shape (rows, members), -1 where there are fewer.
+        subsets: Which members a subset holds, shape (subsets, members).
+        feasible: Whether a subset can be on the air together, shape (rows, subsets).
+        blocks: Whether it silences the station.
+    """
+
+    station: IntArray
+    row_of: IntArray
+    member: IntArray
+    subsets: BoolArray
+    feasible: BoolArray
+    blocks: BoolArray
+
+
+def energy_sets(scene: Scene) -> EnergySets:
+    """Return the energy sets of all stations that have one."""
+    count = scene.settings.approximations.energy_count
+    is_hidden = ~scene.hears_by_power
+    np.fill_diagonal(is_hidden, val=False)
+    power_mW = np.where(is_hidden, scene.at_station_mW.T, 0.0)  # at u in row u
+    member = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
+    member_mW = np.take_along_axis(power_mW, member, axis=1)
+    threshold_mW = mW_from_dBm(scene.settings.sensing_dBm)
+    station = np.flatnonzero(member_mW.sum(axis=1) >= threshold_mW)
+    if not scene.settings.terms.energy_sensing:
+        station = station[:0]
+    member, member_mW = member[station], member_mW[station]
+    size = member.shape[1]
+    subsets = np.array([[bool(held >> i & 1) for i in range(size)] for held in range(1 << size)])
+    together = scene.senses[member[:, :, None], member[:, None, :]]
+    clashes = np.einsum("rij,si,sj->rs", together.astype(np.float64), subsets, subsets) > 0
+    lacks = (member_mW == 0.0).astype(np.float64) @ subsets.T > 0
+    row_of = np.full(scene.station_count, -1)
+    row_of[station] = np.arange(len(station))
+    return EnergySets(
+        station,
+        row_of,
+        np.where(member_mW > 0.0, member, -1),
+        subsets,
+        ~(clashes | lacks),
+        member_mW @ subsets.T >= threshold_mW,
+    )
+
+
+def subset_weights(sets: EnergySets, on: FloatArray) -> FloatArray:
+    """Return the product weight of each feasible subset, shape (rows, subsets).
+
+    Source: MODEL 3.6.
+
+    Args:
+        sets: Energy sets.
+        on: a, probability that a member is on while the station could send.
+    """
+    odds = on / (1.0 - on)
+    factors = np.where(sets.subsets[None, :, :], odds[:, None, :], 1.0)
+    return np.where(sets.feasible, factors.prod(axis=2), 0.0)
+
+
+class Gates(NamedTuple):
+    """How summed power keeps links and their interferers apart, by relation.
+
+    Args:
+        before: al, for frames that begin while the interferer is on.
+        during: be, for interferers that begin during a frame.
+    """
+
+    before: FloatArray
+    during: FloatArray
+
+
+class GateMasks(NamedTuple):
+    """The subsets that a gate compares, by relation it concerns.
+
+    Args:
+        relation: The relations.
+        row: The energy set of the station that is silenced.
+        with_it: Subsets with the other party of the relation, and no other hostile station.
+        without: Subsets to compare with.
+    """
+
+    relation: IntArray
+    row: IntArray
+    with_it: BoolArray
+    without: BoolArray
+
+
+def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
+    """Return what the gates compare: at the sender (before) or at the interferer."""
+    own = scene.station[hostile.link]
+    silenced, other = (own, hostile.station) if before else (hostile.station, own)
+    row = sets.row_of[silenced]
+    relation = (
+        np.flatnonzero((row >= 0) & (sets.member[row] == other[:, None]).any(axis=1))
+        if len(sets.station)
+        else np.zeros(0, np.int64)
+    )
+    row = row[relation]
+    holds_it, holds_hostile = [], []
+    for r, at in zip(relation.tolist(), row.tolist(), strict=True):
+        member = sets.member[at]
+        rivals = hostile.station[(hostile.link == hostile.link[r])]
+        rivals = rivals[rivals != hostile.station[r]]
+        holds_it.append(sets.subsets[:, member == other[r]].any(axis=1))
+        holds_hostile.append(sets.subsets[:, np.isin(member, rivals)].any(axis=1))
+    shape = (len(relation), len(sets.subsets))
+    it = np.array(holds_it, np.bool_).reshape(shape)
+    rid_of_others = ~np.array(holds_hostile, np.bool_).reshape(shape)
+    return GateMasks(relation, row, it & rid_of_others, ~it & rid_of_others)
+
+
+def gate(sets: EnergySets, weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
+    """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation.
+
+    Source: MODEL 3.6.
+    """
+    result = np.ones(count)
+    weight = weights[masks.row]
+    free = weight * ~sets.blocks[masks.row]
+    with_it = (free * masks.with_it).sum(axis=1) / ((weight * masks.with_it).sum(axis=1) + TINY)
+    without = (free * masks.without).sum(axis=1) / ((weight * masks.without).sum(axis=1) + TINY)
+    result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
+    return result

@@ -1,0 +1,93 @@
+"""How fast interference destroys a frame: the hazard h of a whole payload, loss 1 - exp(-h)."""
+
+import csv
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.quantities import FloatArray, IntArray
+
+LEFT_SLOPE_PER_dB = -2.3
+RIGHT_SLOPE_PER_dB = -2.8
+LOWEST_LN, HIGHEST_LN = -40.0, 7.0
+GRID_STEPS_PER_dB = 100
+GRID_FROM_dB, GRID_TO_dB = -25.0, 60.0
+
+
+class HazardTable(NamedTuple):
+    """Points of the curves, one row per modulation and coding scheme.
+
+    Args:
+        ln_hazard: ln h of each column, falling.
+        ratio_dB: The ratio at which a scheme has that hazard, shape (schemes, columns).
+    """
+
+    ln_hazard: FloatArray
+    ratio_dB: FloatArray
+
+
+@cache
+def hazard_table() -> HazardTable:
+    """Return the points of the curves for a PSDU of 1542 bytes.
+
+    Source: MODEL 1, Table A; read from the table-based error model of ns-3.44.
+    """
+    text = (files("ncsim_wifi.spatial") / "hazards.csv").read_text("utf-8")
+    header, *rows = csv.reader(text.splitlines())
+    return HazardTable(
+        np.log([float(value) for value in header[1:]]),
+        np.array([[float(value) for value in row[1:]] for row in rows]),
+    )
+
+
+def ln_hazard_at(scheme: int, ratio_dB: float) -> float:
+    """Return ln h of one scheme, straight in dB between the points and beyond them.
+
+    Source: MODEL 1, frame loss.
+
+    >>> round(math.exp(ln_hazard_at(5, 16.07)), 6)
+    1.0
+    """
+    table = hazard_table()
+    points_dB = table.ratio_dB[scheme]
+    ln_hazard = float(np.interp(ratio_dB, points_dB, table.ln_hazard))
+    ln_hazard += LEFT_SLOPE_PER_dB * min(0.0, ratio_dB - float(points_dB[0]))
+    ln_hazard += RIGHT_SLOPE_PER_dB * max(0.0, ratio_dB - float(points_dB[-1]))
+    return min(max(ln_hazard, LOWEST_LN), HIGHEST_LN)
+
+
+@cache
+def _grid() -> FloatArray:
+    """Return ln h on an even grid of ratios, shape (schemes, steps); all points lie on it."""
+    steps = round((GRID_TO_dB - GRID_FROM_dB) * GRID_STEPS_PER_dB)
+    ratios_dB = GRID_FROM_dB + np.arange(steps + 2) / GRID_STEPS_PER_dB
+    table = hazard_table()
+    rows = []
+    for points_dB in table.ratio_dB:
+        row = np.interp(ratios_dB, points_dB, table.ln_hazard)
+        row += LEFT_SLOPE_PER_dB * np.minimum(0.0, ratios_dB - points_dB[0])
+        row += RIGHT_SLOPE_PER_dB * np.maximum(0.0, ratios_dB - points_dB[-1])
+        rows.append(np.clip(row, LOWEST_LN, HIGHEST_LN))
+    return np.array(rows)
+
+
+def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
+    """Return h of whole payloads received at a constant ratio.
+
+    The curves are read from a grid of 0.01 dB, on which all points of Table A lie.
+
+    Source: MODEL 1, frame loss.
+
+    Args:
+        scheme: Row of the table; broadcasts against ``ratio_dB``.
+        ratio_dB: Signal to interference and noise.
+    """
+    at = (np.clip(ratio_dB, GRID_FROM_dB, GRID_TO_dB) - GRID_FROM_dB) * GRID_STEPS_PER_dB
+    below = at.astype(np.int64)
+    part = at - below
+    grid = _grid()
+    ln_hazard = grid[scheme, below]
+    ln_hazard += part * (grid[scheme, below + 1] - ln_hazard)
+    return np.asarray(np.exp(ln_hazard))

@@ -1,0 +1,111 @@
+"""Which pairs of stations have a joint chain, and what relations contribute to it.
+
+Source: MODEL 3.9 and 3.10.
+"""
+
+import numpy as np
+
+from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.spatial.backoff import STAGES
+from ncsim_wifi.spatial.chains import SideRates, chain_rates, stationary
+from ncsim_wifi.spatial.relations import Hostile
+from ncsim_wifi.spatial.scene import Scene
+
+
+class JointStages:
+    """The joint distributions of back-off stages of one scene, as the iteration goes.
+
+    Args:
+        scene: The active links.
+        hostile: Hidden relations.
+    """
+
+    def __init__(self, scene: Scene, hostile: Hostile) -> None:
+        self._scene = scene
+        self._hostile = hostile
+        own = scene.station[hostile.link]
+        directed = list(dict.fromkeys(zip(own.tolist(), hostile.station.tolist(), strict=True)))
+        mutual = [(u, w) for u, w in directed if u < w and (w, u) in set(directed)]
+        if not scene.settings.terms.joint_chains:
+            mutual = []
+        self.count = len(mutual)
+        sides = [*mutual, *[(w, u) for u, w in mutual]]
+        side_of = {pair: at for at, pair in enumerate(sides)}
+        self.side: IntArray = np.array(
+            [
+                side_of.get(pair, -1)
+                for pair in zip(own.tolist(), hostile.station.tolist(), strict=True)
+            ],
+            np.int64,
+        )
+        self._station = np.array([u for u, _ in sides], np.int64)
+        self._relations = np.flatnonzero(self.side >= 0)
+        self._joint: FloatArray | None = None
+
+    def partner_stages(self, alone: FloatArray) -> FloatArray:
+        """Return P(b | a), how likely the other is in stage b, shape (relations, 7, 7).
+
+        Args:
+            alone: Time-weighted stages of the interferer of each relation, for want of a chain.
+        """
+        result = np.repeat(alone[:, None, :], STAGES, axis=1)
+        if self._joint is not None:
+            both = np.concatenate([self._joint, self._joint.transpose(0, 2, 1)])
+            given = both / np.maximum(both.sum(axis=2, keepdims=True), 1e-300)
+            result[self._relations] = given[self.side[self._relations]]
+        return result
+
+    def update(
+        self,
+        attempts: FloatArray,
+        total: FloatArray,
+        own_part: FloatArray,
+        relation: tuple[FloatArray, FloatArray, FloatArray],
+        cycle_us: FloatArray,
+    ) -> None:
+        """Solve the chains anew and move towards the solution.
+
+        Args:
+            attempts: a_l, the share of each link in the attempts of its station.
+            total: tot_l(a), success of each link by stage.
+            own_part: sbar_r(a), what of it is due to each relation.
+            relation: s_b, hit_b and phi_b of each relation.
+            cycle_us: cyc_u(k) of each station.
+        """
+        if not self.count:
+            return
+        sides = self._sides(attempts, total, own_part, relation)
+        half = self.count
+        cycles_us = cycle_us[self._station]
+        one, two = (
+            SideRates(*(each[part] for each in sides), cycles_us[part])
+            for part in (slice(0, half), slice(half, None))
+        )
+        fresh = stationary(chain_rates(one, two))
+        gain = self._scene.settings.approximations.stage_gain
+        self._joint = fresh if self._joint is None else gain * fresh + (1.0 - gain) * self._joint
+
+    def _sides(
+        self,
+        attempts: FloatArray,
+        total: FloatArray,
+        own_part: FloatArray,
+        relation: tuple[FloatArray, FloatArray, FloatArray],
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return s, hit, phi and o of each side; links that are not hurt contribute s = 1."""
+        at = self._relations
+        side, link = self.side[at], self._hostile.link[at]
+        weight = attempts[link][:, None]
+        survives_r, hit_r, share_r = (each[at] for each in relation)
+        shape = (2 * self.count, STAGES)
+        survives, hit, share = np.ones(shape), np.zeros(shape), np.zeros(shape)
+        hurt = np.zeros((2 * self.count, 1))
+        np.add.at(hurt, side, weight)
+        np.add.at(survives, side, weight * (survives_r - 1.0))
+        np.add.at(hit, side, weight * hit_r)
+        np.add.at(share, side, weight * share_r)
+        per_station = (self._scene.link_of_station * attempts) @ total
+        other = per_station[self._station]
+        rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
+        np.add.at(other, side, weight * (rest - total[link]))
+        return survives, hit, share / hurt, np.clip(other, 0.0, 1.0)

@@ -1,0 +1,237 @@
+"""Who destroys whose frames unheard: relations of a link with hidden stations.
+
+Source: MODEL 2.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
+from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.scene import Scene
+
+FAR_ACTIVITY = 0.62
+FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
+SURVIVAL_DISCOUNT = 0.6
+MAX_JOINT_HAZARD = 10.0
+NOBODY = -1
+
+
+@dataclass(frozen=True)
+class Near:
+    """The strongest hidden stations of each link, strongest first, and the noise of the rest.
+
+    Args:
+        station: Shape (links, near), ``NOBODY`` where there are fewer.
+        power_mW: Their power at the receiver, 0 where there is nobody.
+        noise_mW: Noise and far interferers, shape (links,).
+    """
+
+    station: IntArray
+    power_mW: FloatArray
+    noise_mW: FloatArray
+
+
+def far_activity(degree: FloatArray) -> FloatArray:
+    """Return how much of the time a far interferer is taken to be on.
+
+    Source: MODEL 2, near and far interferers.
+
+    Args:
+        degree: Number of stations it senses.
+    """
+    return FAR_ACTIVITY / (1.0 + FAR_ACTIVITY_PER_NEIGHBOUR * degree)
+
+
+def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
+    """Return the interferers looked at one by one; all others only raise the noise.
+
+    Args:
+        scene: The active links.
+        is_hidden: hid[w, l], shape (stations, links).
+    """
+    count = scene.settings.approximations.near_count
+    power_mW = np.where(is_hidden, scene.at_receiver_mW, 0.0).T
+    order = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
+    near_mW = np.take_along_axis(power_mW, order, axis=1)
+    far_mW = power_mW.copy()
+    np.put_along_axis(far_mW, order, 0.0, axis=1)
+    noise_mW = np.full(len(scene.links), scene.plant.noise_mW)
+    if scene.settings.terms.far_noise:
+        noise_mW += far_mW @ far_activity(scene.senses.sum(axis=1).astype(np.float64))
+    return Near(np.where(near_mW > 0.0, order, NOBODY), near_mW, noise_mW)
+
+
+@dataclass(frozen=True)
+class Hostile:
+    """All relations r = (link, station) worth counting, by link, group and strength.
+
+    Args:
+        link: The link that suffers.
+        station: The hidden station that it suffers from.
+        is_strong: Whether the station makes the receiver miss any frame that comes later.
+        delta: Extra hazard beyond that of each set of helpers, shape (relations, sets).
+        omega: Weight of each set of helpers, 0 where the set is impossible.
+        helper: Stronger interferers that may act together with it, shape (relations, helpers).
+        helper_sets: Which helpers a set holds, shape (sets, helpers).
+        group: Number of the group of each relation.
+        by_cts_only: Whether only the CTS that answer the station reach the receiver.
+    """
+
+    link: IntArray
+    station: IntArray
+    is_strong: BoolArray
+    delta: FloatArray
+    omega: FloatArray
+    helper: IntArray
+    helper_sets: BoolArray
+    group: IntArray
+    by_cts_only: BoolArray
+
+    def __len__(self) -> int:
+        return len(self.link)
+
+    @cached_property
+    def group_starts(self) -> IntArray:
+        """Return the first relation of each group."""
+        return np.flatnonzero(np.diff(self.group, prepend=-1))
+
+    @cached_property
+    def link_of_group(self) -> IntArray:
+        """Return the link that each group belongs to."""
+        return self.link[self.group_starts]
+
+    @cached_property
+    def is_member_of_several(self) -> BoolArray:
+        """Return which relations share their group."""
+        return np.bincount(self.group)[self.group] > 1
+
+    @cached_property
+    def same_link(self) -> tuple[IntArray, IntArray]:
+        """Return all ordered pairs of different relations of one link."""
+        firsts, seconds = np.nonzero(
+            (self.link[:, None] == self.link[None, :]) & ~np.eye(len(self), dtype=np.bool_)
+        )
+        return firsts, seconds
+
+    @cached_property
+    def has_helpers(self) -> BoolArray:
+        """Return which relations may act together with others."""
+        return np.asarray((self.helper != NOBODY).any(axis=1))
+
+
+def hostile_relations(scene: Scene, near: Near) -> Hostile:
+    """Return the relations, with the hazard that each adds to that of stronger interferers.
+
+    The increments of a set of interferers add up to the hazard of the set, so that joint
+    interference is attributed to its weakest member and never counted twice.
+    """
+    settings = scene.settings
+    rows = np.arange(len(scene.links))[:, None]
+    somebody = near.station != NOBODY
+    ratio_dB = scene.ratio_dB(near.power_mW + near.noise_mW[:, None], rows)
+    locks = near.power_mW >= 10.0 ** (settings.preamble_dBm / 10.0)
+    is_strong = somebody & (locks | (ratio_dB < settings.preamble_ratio_dB))
+    by_cts_only = somebody & ~is_strong & _cts_reaches(scene)[near.station, rows]
+    is_strong |= by_cts_only
+    helper = _helpers(scene, near, is_strong)
+    sets = _subsets(settings.approximations.helper_count)
+    delta, omega = _increments(scene, near, helper, sets)
+    worst = np.where(omega > 0.0, delta, 0.0).max(axis=2)
+    kept = somebody & (is_strong | (-np.expm1(-worst) >= settings.approximations.min_kill))
+    kept &= scene.is_alive[:, None]
+    if not settings.terms.hidden_loss:
+        kept[:] = False
+    link, place, group = _grouped(kept, near.station, scene.senses)
+    helper_station = np.where(
+        helper == NOBODY, NOBODY, np.take_along_axis(near.station[:, None, :], helper, axis=2)
+    )
+    return Hostile(
+        link,
+        near.station[link, place],
+        is_strong[link, place],
+        delta[link, place],
+        omega[link, place],
+        helper_station[link, place],
+        sets,
+        group,
+        by_cts_only[link, place],
+    )
+
+
+def _cts_reaches(scene: Scene) -> BoolArray:
+    """Return which receivers hear the CTS that answer which stations, (stations, links)."""
+    if not scene.settings.rts_cts:
+        return np.zeros((scene.station_count, len(scene.links)), np.bool_)
+    heard_mW = 10.0 ** (scene.settings.preamble_dBm / 10.0)
+    heard = (scene.receiver_at_receiver_mW >= heard_mW).astype(np.float64)
+    return np.asarray(scene.link_of_station.astype(np.float64) @ heard > 0.0)
+
+
+def _subsets(size: int) -> BoolArray:
+    """Return all subsets of a few things, the empty one first."""
+    return np.array([[bool(held >> i & 1) for i in range(size)] for held in range(1 << size)])
+
+
+def _helpers(scene: Scene, near: Near, is_strong: BoolArray) -> IntArray:
+    """Return Q_r as places among the near ones, shape (links, near, helpers) (MODEL 2)."""
+    size = near.station.shape[1]
+    able = (near.station != NOBODY) & ~is_strong
+    able_before = able[:, None, :] & (np.arange(size)[None, :] < np.arange(size)[:, None])
+    able_before &= ~scene.senses[near.station[:, :, None], near.station[:, None, :]]
+    if not scene.settings.terms.joint_interference:
+        able_before[:] = False
+    order = np.argsort(~able_before, axis=2, kind="stable")
+    order = order[:, :, : scene.settings.approximations.helper_count]
+    chosen = np.take_along_axis(able_before, order, axis=2)
+    short = scene.settings.approximations.helper_count - order.shape[2]
+    places = np.where(chosen, order, NOBODY)
+    return np.pad(places, ((0, 0), (0, 0), (0, short)), constant_values=NOBODY)
+
+
+def _increments(
+    scene: Scene, near: Near, helper: IntArray, sets: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return Delta_r and omega_r for each set of helpers, shape (links, near, sets)."""
+    links = np.arange(len(scene.links))[:, None, None]
+    there = helper != NOBODY
+    helper_mW = np.where(there, np.take_along_axis(near.power_mW[:, None, :], helper, axis=2), 0.0)
+    helper_station = np.take_along_axis(near.station[:, None, :], helper, axis=2)
+    together = scene.senses[helper_station[..., :, None], helper_station[..., None, :]]
+    together &= there[..., :, None] & there[..., None, :]
+    clashes = np.einsum("lnij,si,sj->lns", together, sets, sets) > 0
+    lacks = np.einsum("lni,si->lns", ~there, sets) > 0
+    set_mW = helper_mW @ sets.T + near.noise_mW[:, None, None]
+    before = hazard(scene.scheme[links], scene.ratio_dB(set_mW, links))
+    after = hazard(scene.scheme[links], scene.ratio_dB(set_mW + near.power_mW[..., None], links))
+    delta = np.minimum(after, MAX_JOINT_HAZARD) - np.minimum(before, MAX_JOINT_HAZARD)
+    delta[..., 0] = after[..., 0] - before[..., 0]
+    omega = np.where(clashes | lacks, 0.0, np.exp(-SURVIVAL_DISCOUNT * before))
+    return np.maximum(delta, 0.0), omega
+
+
+def _grouped(
+    kept: BoolArray, station: IntArray, senses: BoolArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return link, place and group of the kept relations: each group excludes itself on air."""
+    links, places, groups = [], [], []
+    first_group = 0
+    for link in np.flatnonzero(kept.any(axis=1)).tolist():
+        cliques: list[list[int]] = []
+        for place in np.flatnonzero(kept[link]).tolist():
+            heard = senses[station[link, place]]
+            for clique in cliques:
+                if heard[station[link, clique]].all():
+                    clique.append(place)
+                    break
+            else:
+                cliques.append([place])
+        for number, clique in enumerate(cliques, first_group):
+            links += [link] * len(clique)
+            places += clique
+            groups += [number] * len(clique)
+        first_group += len(cliques)
+    as_int = [np.array(values, np.int64) for values in (links, places, groups)]
+    return as_int[0], as_int[1], as_int[2]

@@ -1,0 +1,72 @@
+"""How long stations stay silent after an exchange they heard.
+
+Source: MODEL 3.4.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.mac.timing import AIFS_us
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.scene import Scene
+
+EIFS_AFTER_LOSS_us = 60.2  # EIFS - AIFS beyond AIFS: SIFS + ACK at the slowest rate (MODEL 3.4)
+EIFS_WEIGHT = 0.5
+
+
+class Silence(NamedTuple):
+    """Silence after the data frames of each station.
+
+    Args:
+        mean_us: b_u, mean over those that sense it; its own overhead if nobody does.
+        deviation_us: dev[u, w], how much longer w in particular stays silent.
+    """
+
+    mean_us: FloatArray
+    deviation_us: FloatArray
+
+
+def silence_us(
+    overhead_us: FloatArray, missed: FloatArray, *, hears: FloatArray, decodes: FloatArray
+) -> FloatArray:
+    """Return bl[l, w], how long w stays silent after data of link l.
+
+    Source: MODEL 3.4.
+
+    Args:
+        overhead_us: ovh of the link.
+        missed: Probability that w was busy when the frame began and never locked on it.
+        hears: 1 where w hears the acknowledgement.
+        decodes: 1 where w understands the frame.
+    """
+    understood_us = decodes * overhead_us + (1.0 - decodes) * (AIFS_us + EIFS_AFTER_LOSS_us)
+    unheard_us = missed * AIFS_us + (1.0 - missed) * understood_us
+    return hears * overhead_us + (1.0 - hears) * unheard_us
+
+
+def silence_of(scene: Scene, clear: FloatArray, attempts: FloatArray) -> Silence:
+    """Return the silence after frames of each station.
+
+    Args:
+        scene: The active links.
+        clear: C of the occupancy.
+        attempts: a_l, the share of each link in the attempts of its station.
+    """
+    missed = np.clip(1.0 - clear[scene.station], 0.0, 1.0)
+    per_link_us = silence_us(
+        scene.overhead_us[:, None],
+        missed,
+        hears=scene.hears_receiver.astype(np.float64),
+        decodes=scene.decodes.astype(np.float64),
+    )
+    own = scene.link_of_station * attempts
+    overhead_us = own @ scene.overhead_us
+    if not scene.settings.terms.silence:
+        return Silence(overhead_us, np.zeros_like(clear))
+    per_station_us = own @ per_link_us
+    degree = scene.senses.sum(axis=1)
+    sums_us = (per_station_us * scene.senses).sum(axis=1)
+    mean_us = np.where(degree > 0, sums_us / np.maximum(degree, 1), overhead_us)
+    deviation_us = EIFS_WEIGHT * (per_station_us - mean_us[:, None]) * scene.senses
+    return Silence(mean_us, deviation_us)

@@ -1,0 +1,222 @@
+"""The fixed point: attempt rates, occupancy, losses and back-off stages, a fixed number of times.
+
+A fixed number of steps from a cold start makes the result a function of the active set alone.
+
+Source: MODEL 3 and 6.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ncsim_wifi.mac.timing import SLOT_us
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.acks import ack_survival
+from ncsim_wifi.spatial.attempts import Attempts, Exchange, attempts_of
+from ncsim_wifi.spatial.backoff import (
+    MEAN_COUNTS,
+    STAGES,
+    attempt_probability,
+    mean_count,
+    visits_per_packet,
+)
+from ncsim_wifi.spatial.collisions import base_success
+from ncsim_wifi.spatial.energy import gate, subset_weights
+from ncsim_wifi.spatial.joint import JointStages
+from ncsim_wifi.spatial.losses import (
+    LARGEST_ON,
+    LEAST_ON,
+    HiddenLoss,
+    Traffic,
+    hidden_loss,
+)
+from ncsim_wifi.spatial.occupancy import Occupancy
+from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
+from ncsim_wifi.spatial.scene import Scene, scene_of
+from ncsim_wifi.spatial.silence import Silence, silence_of
+from ncsim_wifi.spatial.statics import Statics, statics_of
+
+STEPS_WITH_CHAINS = 4  # then every second one (MODEL 3.10)
+LEAST_ACTIVITY = 1e-12
+
+
+def saturated_goodputs_MBps(plant: Plant, links: Sequence[int]) -> FloatArray:
+    """Return what each of a set of links delivers when all always have something to send.
+
+    Args:
+        plant: All links of the network.
+        links: The active ones, each once; their order has no influence.
+    """
+    if not links:
+        return np.zeros(0)
+    in_order = plant.in_order(links)
+    solved = FixedPoint(scene_of(plant, in_order)).goodputs_MBps()
+    by_link = dict(zip(in_order, solved.tolist(), strict=True))
+    return np.array([by_link[link] for link in links])
+
+
+class FixedPoint:
+    """The iteration on one scene.
+
+    Args:
+        scene: The active links.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._statics: Statics = statics_of(scene)
+        self._joint = JointStages(scene, self._statics.hostile)
+        links, stations = len(scene.links), scene.station_count
+        self._stages = np.zeros((stations, STAGES))
+        self._stages[:, 0] = 1.0
+        self._link_stages = np.zeros((links, STAGES))
+        self._link_stages[:, 0] = 1.0
+        self._attempts = 1.0 / scene.link_of_station.sum(axis=1)[scene.station]
+        self._loss = np.zeros(links)
+        self._clear = np.ones((stations, stations))
+        self._blocked = np.zeros(stations)
+        overhead_us = (scene.link_of_station * self._attempts) @ scene.overhead_us
+        self._silence = Silence(overhead_us, np.zeros((stations, stations)))
+
+    def goodputs_MBps(self) -> FloatArray:
+        """Iterate, and return the goodput of each link of the scene."""
+        settings = self._scene.settings.approximations
+        rate_per_us = np.zeros(self._scene.station_count)
+        for step in range(settings.iterations):
+            rate_per_us = self._step(with_chains=step < STEPS_WITH_CHAINS or step % 2 == 0)
+        delivered = rate_per_us[self._scene.station] * self._attempts * (1.0 - self._loss)
+        return np.where(self._scene.is_alive, PAYLOAD_MB_us_per_s * delivered, 0.0)
+
+    def _step(self, *, with_chains: bool) -> FloatArray:
+        """Go one step; return R_u."""
+        times = self._exchange()
+        tau = attempt_probability(mean_count(self._stages))
+        attempts = attempts_of(self._scene, tau, self._clear, self._blocked, times)
+        occupancy = self._statics.occupancy(np.maximum(attempts.activity, LEAST_ACTIVITY))
+        self._clear = np.clip(occupancy.clear, 0.0, 1.0)
+        traffic = self._traffic(tau, attempts, occupancy, times)
+        gain = self._scene.settings.approximations.gain
+        fresh = silence_of(self._scene, self._clear, self._attempts)
+        self._silence = Silence(
+            *(
+                gain * new + (1.0 - gain) * old
+                for new, old in zip(fresh, self._silence, strict=True)
+            )
+        )
+        self._learn(traffic, attempts, with_chains=with_chains)
+        return traffic.rate_per_us
+
+    def _exchange(self) -> Exchange:
+        """Return T_u, ovh_u and the silence after frames, averaged over links (MODEL 3.1)."""
+        own = self._scene.link_of_station * self._attempts
+        return Exchange(own @ self._scene.on_air_us, own @ self._scene.overhead_us, *self._silence)
+
+    def _traffic(
+        self, tau: FloatArray, attempts: Attempts, occupancy: Occupancy, times: Exchange
+    ) -> Traffic:
+        """Return R_u, D_u and cyc_u (MODEL 3.3)."""
+        rate_per_us = attempts.rate_per_us * occupancy.idle
+        base_us = times.on_air_us + times.overhead_us
+        count_us = np.maximum(SLOT_us, (1.0 / rate_per_us - base_us) / mean_count(self._stages))
+        cycle_us = base_us[:, None] + MEAN_COUNTS * count_us[:, None]
+        return Traffic(
+            occupancy.on,
+            tau,
+            rate_per_us,
+            self._stages,
+            cycle_us,
+            times,
+            self._loss,
+            self._attempts,
+        )
+
+    def _learn(self, traffic: Traffic, attempts: Attempts, *, with_chains: bool) -> None:
+        """Bring losses, chains and stages up to date (MODEL 3.5 to 3.11)."""
+        statics = self._statics
+        base = base_success(
+            self._scene, statics.noise_hazard, attempts.same_slot, statics.same_slot_loss
+        )
+        gates = self._gates(traffic)
+        if len(statics.hostile):
+            hidden = hidden_loss(self._scene, statics, traffic, gates)
+            base = base * self._partner_collisions(traffic, gates[1])
+            base = base * self._ack_survival(traffic, hidden)
+            success, parts = self._success(base, hidden)
+            if with_chains and self._joint.count:
+                self._joint.update(
+                    self._attempts,
+                    success,
+                    parts,
+                    (hidden.survives, hidden.hit, hidden.share),
+                    traffic.cycle_us,
+                )
+                success, _ = self._success(base, hidden)
+        else:
+            base = base * self._ack_survival(traffic, None)
+            success = np.repeat(base[:, None], STAGES, axis=1)
+        self._visit(success)
+
+    def _visit(self, success: FloatArray) -> None:
+        """Update stages, attempt shares and losses (MODEL 3.11)."""
+        gain = self._scene.settings.approximations.stage_gain
+        visits = visits_per_packet(np.clip(success, 0.0, 1.0))
+        fresh = visits / visits.sum(axis=1, keepdims=True)
+        self._link_stages = gain * fresh + (1.0 - gain) * self._link_stages
+        per_packet = 1.0 / self._link_stages[:, 0]
+        own = self._scene.link_of_station * per_packet
+        self._attempts = per_packet / own.sum(axis=1)[self._scene.station]
+        self._stages = (self._scene.link_of_station * self._attempts) @ self._link_stages
+        self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
+
+    def _success(self, base: FloatArray, hidden: HiddenLoss) -> tuple[FloatArray, FloatArray]:
+        """Return tot_l(a), and sbar_r(a) of each relation (MODEL 3.9)."""
+        hostile = self._statics.hostile
+        given = self._joint.partner_stages(hidden.alone)
+        parts = np.einsum("rab,rb->ra", given, hidden.survives)
+        logs = hidden.phi[:, None] * np.log(np.maximum(parts, 1e-12))
+        log_sums = np.zeros((len(base), STAGES))
+        np.add.at(log_sums, hostile.link, logs)
+        survives = np.minimum(1.0, np.exp(log_sums) * hidden.correction[:, None])
+        return base[:, None] * survives, parts
+
+    def _gates(self, traffic: Traffic) -> tuple[FloatArray, FloatArray]:
+        """Return al and be of each relation, and update B (MODEL 3.6)."""
+        statics, settings = self._statics, self._scene.settings.approximations
+        count = len(statics.hostile)
+        sets = statics.energy
+        if not len(sets.station):
+            return np.ones(count), np.ones(count)
+        times = traffic.times
+        stretch = (times.on_air_us + settings.energy_tail_us) / times.busy_us
+        on = traffic.on[sets.station[:, None], sets.member] * stretch[sets.member]
+        weights = subset_weights(sets, np.clip(on, LEAST_ON, LARGEST_ON))
+        fresh = (weights * sets.blocks).sum(axis=1) / weights.sum(axis=1)
+        self._blocked[sets.station] += settings.gain * (fresh - self._blocked[sets.station])
+        np.minimum(self._blocked, LARGEST_ON, out=self._blocked)
+        before = gate(sets, weights, statics.before, count)
+        during = gate(sets, weights, statics.during, count)
+        lasts = np.exp(-self._scene.data_us[statics.hostile.link] / settings.helper_cycle_us)
+        return before, 1.0 - (1.0 - during) * lasts
+
+    def _partner_collisions(self, traffic: Traffic, during: FloatArray) -> FloatArray:
+        """Return what same-slot collisions with partners by summed power leave (MODEL 3.6)."""
+        hostile = self._statics.hostile
+        own = self._scene.station[hostile.link]
+        meets = traffic.tau[hostile.station] * self._clear[own, hostile.station]
+        lost = meets * (1.0 - during) * self._statics.same_slot_loss[hostile.link, hostile.station]
+        logs = np.log1p(-np.minimum(lost, LARGEST_ON))
+        return np.exp(np.bincount(hostile.link, logs, minlength=len(self._scene.links)))
+
+    def _ack_survival(self, traffic: Traffic, hidden: HiddenLoss | None) -> FloatArray:
+        """Return what acknowledgements of hidden links leave of frames (MODEL 3.9)."""
+        scene, acks, hostile = self._scene, self._statics.acks, self._statics.hostile
+        if not len(acks.link):
+            return np.ones(len(scene.links))
+        spared = np.ones((len(scene.links), scene.station_count))
+        if hidden is not None:
+            spared[hostile.link, hostile.station] = 1.0 - hidden.kill
+        sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
+        window_us = scene.protected_us[acks.link] + scene.ack_us[acks.other]
+        kill = acks.kill * spared[acks.link, scene.station[acks.other]]
+        logs = np.log(np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill)))
+        return np.exp(np.bincount(acks.link, logs, minlength=len(scene.links)))

@@ -1,0 +1,107 @@
+"""What stays the same while the fixed point is approached."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
+from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations
+from ncsim_wifi.spatial.collisions import same_slot_loss
+from ncsim_wifi.spatial.energy import EnergySets, GateMasks, energy_sets, gate_masks
+from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
+from ncsim_wifi.spatial.relations import Hostile, hostile_relations, near_interferers
+from ncsim_wifi.spatial.scene import Scene
+
+CTS_WINDOW_us = 48.0  # RTS, SIFS and the first slot of the CTS (MODEL 3.8)
+BEFORE_CTS_us = 44.0  # RTS and SIFS
+
+
+@dataclass(frozen=True)
+class Statics:
+    """Relations and tables of one scene.
+
+    Args:
+        occupancy: Who is on the air together.
+        hostile: Hidden relations.
+        window_us: V_r, the window in which an interferer must not begin.
+        alone_hazard: h(w) of each relation.
+        by_cts: Whether a relation is one of stations kept apart by CTS only.
+        stops_at_cts: Whether the sender defers from the interferer's CTS on.
+        noise_hazard: h_noise of each link.
+        same_slot_loss: sync[l, w].
+        ack_hazard: h_ack[l, k].
+        acks: Who suffers from whose acknowledgements.
+        energy: Who is silenced by summed power.
+        before: Subsets for the gates at the sender.
+        during: Subsets for the gates at the interferer.
+    """
+
+    occupancy: OccupancyModel
+    hostile: Hostile
+    window_us: FloatArray
+    alone_hazard: FloatArray
+    by_cts: BoolArray
+    stops_at_cts: BoolArray
+    noise_hazard: FloatArray
+    same_slot_loss: FloatArray
+    ack_hazard: FloatArray
+    acks: AckRelations
+    energy: EnergySets
+    before: GateMasks
+    during: GateMasks
+
+
+def statics_of(scene: Scene) -> Statics:
+    """Return the relations and tables of a scene."""
+    is_hidden = ~scene.hears_by_power[:, scene.station] & ~scene.link_of_station
+    near = near_interferers(scene, is_hidden)
+    hostile = hostile_relations(scene, near)
+    energy = energy_sets(scene)
+    hazards = ack_hazard(scene, near.noise_mW)
+    own = scene.station[hostile.link]
+    return Statics(
+        occupancy_of(scene.senses, scene.settings.approximations.max_sets),
+        hostile,
+        _windows_us(scene, hostile),
+        hostile.delta[:, 0],
+        scene.silenced_by_cts[own, hostile.station],
+        _hears_cts_of(scene, own, hostile.station),
+        _added_noise_hazard(scene, near.noise_mW),
+        same_slot_loss(scene, near.noise_mW),
+        hazards,
+        ack_relations(scene, hazards, is_hidden),
+        energy,
+        gate_masks(scene, energy, hostile, before=True),
+        gate_masks(scene, energy, hostile, before=False),
+    )
+
+
+def _added_noise_hazard(scene: Scene, noise_mW: FloatArray) -> FloatArray:
+    """Return the hazard of the far interferers' noise beyond that of the noise floor.
+
+    What the noise floor alone costs is in the clean rate, which the link model decides.
+    """
+    every = np.arange(len(scene.links))
+    whole = hazard(scene.scheme, scene.ratio_dB(noise_mW, every))
+    return np.maximum(0.0, whole - scene.plant.noise_hazard[scene.links])
+
+
+def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
+    """Return V_r (MODEL 2, and 3.8 for RTS/CTS)."""
+    link = hostile.link
+    window_us = np.where(hostile.is_strong, scene.data_us[link], scene.protected_us[link])
+    if not scene.settings.rts_cts:
+        return window_us
+    hears_cts = scene.hears_receiver[link, hostile.station]
+    whole_us = scene.on_air_us[link]
+    window_us = np.where(hostile.is_strong, whole_us, window_us)
+    return np.where(hears_cts | hostile.by_cts_only, CTS_WINDOW_us, window_us)
+
+
+def _hears_cts_of(scene: Scene, own: IntArray, other: IntArray) -> BoolArray:
+    """Return whether a station hears the CTS that answer another, under RTS/CTS."""
+    if not scene.settings.rts_cts or not len(own):
+        return np.zeros(len(own), np.bool_)
+    heard = scene.link_of_station.astype(np.float64) @ scene.hears_receiver.astype(np.float64)
+    return np.asarray(heard[other, own] > 0)
