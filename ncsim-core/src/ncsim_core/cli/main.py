@@ -12,7 +12,18 @@ import typer
 from typer.exceptions import TyperException
 
 from ncsim_core import __version__
-from ncsim_core.cli import compare, explain, export, new, plugins, run, schema, trace, validate
+from ncsim_core.cli import (
+    compare,
+    explain,
+    export,
+    new,
+    plugins,
+    run,
+    schema,
+    sweep,
+    trace,
+    validate,
+)
 from ncsim_core.errors import EngineError, NcsimError
 from ncsim_core.plugins import COMMAND_GROUP
 
@@ -55,6 +66,7 @@ app.command("validate")(validate.validate)
 app.command("new")(new.new)
 app.command("explain")(explain.explain)
 app.command("compare")(compare.compare)
+app.command("sweep")(sweep.sweep)
 app.add_typer(trace.app, name="trace")
 app.command("export")(export.export)
 app.add_typer(plugins.app, name="plugins")

@@ -1,0 +1,211 @@
+"""Results on disk: ``results.sqlite`` in the folder of a study.
+
+Write-ahead log, one transaction per chunk: whatever happens to the process, what was committed is
+there, and nothing is there twice. Results are kept by key, so that every sweep into the same
+folder reuses them; ``member`` says which runs of which plan they belong to.
+"""
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final, Self
+
+from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep.plan import SweepPlan, canonical, plan_from_json
+from ncsim_core.sweep.worker import Item, ResultRow
+
+STORE_NAME: Final = "results.sqlite"
+FORMAT: Final = "1"
+BUSY_s: Final = 60.0
+LOOKUP: Final = 500
+"""Keys per query; SQLite takes 999 parameters everywhere."""
+RETRIED: Final = ("failed", "limit_reached")
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS plan (
+  digest TEXT PRIMARY KEY, name TEXT NOT NULL, document TEXT NOT NULL, runs INTEGER NOT NULL,
+  turn INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS member (
+  plan TEXT NOT NULL, number INTEGER NOT NULL, point TEXT NOT NULL, seed INTEGER NOT NULL,
+  key TEXT NOT NULL, PRIMARY KEY (plan, number)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS result (
+  key TEXT PRIMARY KEY, status TEXT NOT NULL, makespan_us INTEGER, ended_us INTEGER,
+  events INTEGER, transfers INTEGER, remote_MB REAL, route_work_MB_hops REAL,
+  wall_s REAL NOT NULL, error TEXT) WITHOUT ROWID;
+"""
+_COLUMNS = ", ".join(ResultRow._fields)
+_MARKS = ", ".join("?" for _ in ResultRow._fields)
+_CHANGES = ", ".join(f"{name} = excluded.{name}" for name in ResultRow._fields[1:])
+_SAVE = (
+    f"INSERT INTO result ({_COLUMNS}) VALUES ({_MARKS}) "
+    f"ON CONFLICT (key) DO UPDATE SET {_CHANGES} WHERE result.status <> 'completed'"
+)
+
+
+class Store:
+    """The results of a study.
+
+    Args:
+        path: The study's folder, or ``None`` to keep results in memory only.
+
+    Raises:
+        ScenarioError: It cannot be opened, or is of another format.
+    """
+
+    def __init__(self, path: Path | None, *, must_exist: bool = False) -> None:
+        self.path = path
+        file = None if path is None else path / STORE_NAME
+        if file is not None and must_exist and not file.exists():
+            raise ScenarioError(f"{path}: holds no {STORE_NAME}; is it the folder of a sweep?")
+        if path is not None:
+            path.mkdir(parents=True, exist_ok=True)
+        try:
+            self._connection = sqlite3.connect(file or ":memory:", timeout=BUSY_s)
+            self._connection.execute("PRAGMA journal_mode=WAL")
+            self._connection.executescript(_TABLES)
+            self._check_format()
+        except sqlite3.DatabaseError as error:
+            raise ScenarioError(f"{file}: {error}") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._connection.close()
+
+    def register(self, plan: SweepPlan, runs: int) -> None:
+        """Make ``plan`` the study's current one."""
+        with self._transaction() as connection:
+            turn = connection.execute("SELECT coalesce(max(turn), 0) + 1 FROM plan").fetchone()[0]
+            connection.execute(
+                "INSERT INTO plan VALUES (?, ?, ?, ?, ?) ON CONFLICT (digest) DO UPDATE SET "
+                "name = excluded.name, document = excluded.document, turn = excluded.turn",
+                (plan.digest, plan.name, plan.to_json(), runs, turn),
+            )
+
+    def current(self) -> tuple[SweepPlan, int]:
+        """Return the plan that was worked on last, and its number of runs.
+
+        Raises:
+            ScenarioError: There is none.
+        """
+        query = "SELECT document, runs FROM plan ORDER BY turn DESC LIMIT 1"
+        row = self._connection.execute(query).fetchone()
+        if row is None:
+            raise ScenarioError(f"{self.path}: holds no sweep")
+        return plan_from_json(row[0]), row[1]
+
+    def enrol(self, plan: SweepPlan, items: Sequence[Item]) -> None:
+        """Note which runs belong to a plan."""
+        with self._transaction() as connection:
+            connection.executemany(
+                "INSERT OR REPLACE INTO member VALUES (?, ?, ?, ?, ?)",
+                [
+                    (
+                        plan.digest,
+                        item.run.number,
+                        canonical(item.run.values),
+                        item.run.seed,
+                        item.key,
+                    )
+                    for item in items
+                ],
+            )
+
+    def save(self, rows: Iterable[ResultRow]) -> None:
+        """Keep results, all or none of them; a completed run is never replaced.
+
+        Raises:
+            ScenarioError: The disk is full or cannot be written.
+        """
+        with self._transaction() as connection:
+            connection.executemany(_SAVE, rows)
+
+    def finished(self, keys: Sequence[str], *, retry_failed: bool = False) -> dict[str, ResultRow]:
+        """Return what is there already of some keys.
+
+        Args:
+            keys: Any number of them.
+            retry_failed: Pass over runs that failed or reached a limit.
+        """
+        found: dict[str, ResultRow] = {}
+        for start in range(0, len(keys), LOOKUP):
+            part = keys[start : start + LOOKUP]
+            marks = ", ".join("?" * len(part))
+            query = f"SELECT {_COLUMNS} FROM result WHERE key IN ({marks})"
+            rows = map(ResultRow._make, self._connection.execute(query, part))
+            found |= {row.key: row for row in rows if not (retry_failed and row.status in RETRIED)}
+        return found
+
+    def rows(self) -> Iterator[tuple[tuple[Any, ...], int, ResultRow | None]]:
+        """Yield values, seed and result of each run of the current plan, in file order."""
+        plan, _ = self.current()
+        columns = ", ".join(f"result.{name}" for name in ResultRow._fields)
+        query = (
+            f"SELECT point, seed, {columns} FROM member LEFT JOIN result "
+            "ON result.key = member.key WHERE plan = ? ORDER BY number"
+        )
+        for point, seed, *result in self._connection.execute(query, (plan.digest,)):
+            row = None if result[0] is None else ResultRow._make(result)
+            yield tuple(json.loads(point)), seed, row
+
+    def counts(self) -> dict[str, int]:
+        """Return how many runs of the current plan ended how."""
+        plan, _ = self.current()
+        query = (
+            "SELECT status, count(*) FROM member JOIN result ON result.key = member.key "
+            "WHERE plan = ? GROUP BY status ORDER BY status"
+        )
+        return dict(self._connection.execute(query, (plan.digest,)).fetchall())
+
+    def merge(self, other: "Store") -> None:
+        """Take over all that another study holds."""
+        source = other._connection  # noqa: SLF001 - of the same class
+        with self._transaction() as connection:
+            rows = source.execute(f"SELECT {_COLUMNS} FROM result")
+            connection.executemany(_SAVE, rows)
+            plans = source.execute("SELECT digest, name, document, runs, turn FROM plan")
+            connection.executemany("INSERT OR IGNORE INTO plan VALUES (?, ?, ?, ?, ?)", plans)
+            members = source.execute("SELECT plan, number, point, seed, key FROM member")
+            connection.executemany("INSERT OR IGNORE INTO member VALUES (?, ?, ?, ?, ?)", members)
+
+    def _transaction(self) -> "_Transaction":
+        return _Transaction(self._connection, self.path)
+
+    def _check_format(self) -> None:
+        with self._connection as connection:
+            connection.execute("INSERT OR IGNORE INTO meta VALUES ('format', ?)", (FORMAT,))
+            row = connection.execute("SELECT value FROM meta WHERE key = 'format'").fetchone()
+        if row[0] != FORMAT:
+            raise ScenarioError(f"{self.path}: is of format {row[0]}, this ncsim reads {FORMAT}")
+
+
+class _Transaction:
+    """All or nothing, with a message that helps when the disk is full."""
+
+    def __init__(self, connection: sqlite3.Connection, path: Path | None) -> None:
+        self._connection = connection
+        self._path = path
+
+    def __enter__(self) -> sqlite3.Connection:
+        return self._connection
+
+    def __exit__(self, kind: object, error: BaseException | None, _: object) -> None:
+        try:
+            if error is None:
+                self._connection.commit()
+            else:
+                self._connection.rollback()
+        except sqlite3.OperationalError as failure:
+            error = failure
+        if isinstance(error, sqlite3.OperationalError):
+            raise ScenarioError(
+                f"{self._path}: {error}; all results up to here are kept, run the same command "
+                "again when there is room"
+            ) from error
