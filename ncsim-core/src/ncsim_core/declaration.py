@@ -25,6 +25,13 @@ def ncsim_components() -> Iterable[Component]:
             capabilities=frozenset({"scale_invariant"}),
         ),
         Component(
+            kind="scheduler",
+            name="all_on_fastest",
+            factory="ncsim_core.builtin.schedulers:AllOnFastestScheduler",
+            summary="Puts every task on the fastest node, so that nothing is sent.",
+            capabilities=frozenset({"scale_invariant"}),
+        ),
+        Component(
             kind="routing_model",
             name="direct",
             factory="ncsim_core.builtin.routing_models:DirectRouting",

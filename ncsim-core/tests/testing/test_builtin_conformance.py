@@ -23,6 +23,10 @@ class TestRoundRobin(SchedulerSuite):
     component = "round_robin"
 
 
+class TestAllOnFastest(SchedulerSuite):
+    component = "all_on_fastest"
+
+
 class TestDirect(RoutingModelSuite):
     component = "direct"
 

@@ -49,3 +49,18 @@ class RoundRobinScheduler(Scheduler):
                 plan[task.id] = nodes[turn % len(nodes)].id
                 turn += 1
         return PlacementPlan(plan)
+
+
+class AllOnFastestScheduler(Scheduler):
+    """Puts every task on the node with the greatest capacity; the first listed if several tie.
+
+    Without pins nothing is sent at all: the baseline that any use of the network must beat.
+    """
+
+    def __init__(self, context: BuildContext) -> None:
+        del context
+
+    @override
+    def schedule(self, dag: DAG, snapshot: NetworkSnapshot) -> PlacementPlan:
+        fastest = max(snapshot.network.nodes, key=lambda node: node.compute_capacity)
+        return PlacementPlan({task.id: task.pinned_to or fastest.id for task in dag.tasks})
