@@ -113,7 +113,7 @@ def test_check_of_core_passes_and_counts():
     result = run("check", "ncsim-core")
 
     assert result.exit_code == 0, result.output
-    assert "routing_model ncsim-core/direct: 14 run, 1 skipped" in result.output
+    assert "routing_model ncsim-core/direct: 13 run, 1 skipped" in result.output
     assert "in all: " in result.output
 
 

@@ -48,7 +48,7 @@ _HOME = {
     "check_component": "ncsim_core.testing.checking",
 }
 
-if "pytest" in sys.modules:  # lets pytest explain the assertions of the suites
+if sys.modules.get("pytest"):  # lets pytest explain the assertions of the suites
     sys.modules["pytest"].register_assert_rewrite("ncsim_core.testing.suites")
 
 

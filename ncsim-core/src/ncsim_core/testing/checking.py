@@ -237,7 +237,8 @@ def described(error: BaseException) -> str:
     if isinstance(error, Unsatisfiable):
         return "it refused every example that was tried"
     text = str(error) if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}"
-    notes = [note for note in getattr(error, "__notes__", ()) if "Falsifying" in note]
+    examples = ("Failing test case", "Falsifying example")  # the wording depends on its version
+    notes = [note for note in getattr(error, "__notes__", ()) if note.startswith(examples)]
     return "\n".join([text, *notes])
 
 

@@ -6,12 +6,12 @@ one place, two links between the same nodes, file orders that differ from id ord
 """
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import TypeAlias, TypeVar
 
 from hypothesis import strategies as st
-from hypothesis.strategies import SearchStrategy
+from hypothesis.strategies import DrawFn, SearchStrategy
 
 from ncsim_core.contracts.queue_model import WaitingTask
 from ncsim_core.network import Link, LinkId, Medium, Network, Node, NodeId, Position
@@ -25,6 +25,7 @@ __all__ = [
     "instances",
     "networks",
     "options_for",
+    "questions_about",
     "radios",
     "sections",
     "traffic",
@@ -62,6 +63,12 @@ def _codes(min_size: int, max_size: int) -> SearchStrategy[list[int]]:
     return st.lists(st.integers(0, 2**24 - 1), min_size=min_size, max_size=max_size)
 
 
+@st.composite
+def _made(draw: DrawFn, make: Callable[..., T], *parts: SearchStrategy[object]) -> T:
+    """Return ``make`` of what is drawn; unlike ``builds``, failures show the object itself."""
+    return make(*(draw(part) for part in parts))
+
+
 _ORDERS = st.integers(0, 3)
 """Seeds of file orders; 0 is the order of the ids."""
 
@@ -79,23 +86,27 @@ def networks(
 ) -> SearchStrategy[Network]:
     """Return networks without decided rates.
 
+    Half of them are as sparse as it comes, half have links enough for routes to compete.
+
     Args:
         max_nodes: At least 1.
         max_links: Parallel links count.
         is_bandwidth_optional: Half of the networks leave all bandwidths to the link model.
     """
     is_bare = st.booleans() if is_bandwidth_optional else st.just(value=False)
-    return st.builds(
-        _network,
-        _codes(1, max_nodes),
-        _codes(0, max_links),
-        _ORDERS,
-        is_bare=is_bare,
-    )
+
+    def of(min_nodes: int, min_links: int) -> SearchStrategy[Network]:
+        nodes, links = _codes(min_nodes, max_nodes), _codes(min_links, max_links)
+        return _made(_network, nodes, links, _ORDERS, is_bare)
+
+    return of(1, 0) | of(min(3, max_nodes), 3 * max_links // 4)
 
 
 def _network(
-    node_codes: Sequence[int], link_codes: Sequence[int], order: int, *, is_bare: bool
+    node_codes: Sequence[int],
+    link_codes: Sequence[int],
+    order: int,
+    is_bare: bool,  # noqa: FBT001 - drawn in order
 ) -> Network:
     nodes = [_node(number, _Digits(code)) for number, code in enumerate(node_codes)]
     pairs = [(a.id, b.id) for a in nodes for b in nodes if a is not b]
@@ -128,7 +139,7 @@ def dags(
     *, max_tasks: int = 6, pin_to: tuple[NodeId, ...] = (), dag_id: str = "dag"
 ) -> SearchStrategy[DAG]:
     """Return DAGs; with ``pin_to``, none, some or all of their tasks are pinned to these nodes."""
-    return dag_codes(max_tasks=max_tasks).map(lambda codes: dag_from(codes, pin_to, dag_id))
+    return _made(lambda codes: dag_from(codes, pin_to, dag_id), dag_codes(max_tasks=max_tasks))
 
 
 DagCodes: TypeAlias = tuple[list[int], list[int], int, str]
@@ -160,6 +171,11 @@ def dag_from(codes: DagCodes, pin_to: Sequence[NodeId], dag_id: str = "dag") -> 
     )
 
 
+def questions_about(drawn: SearchStrategy[Network]) -> SearchStrategy[Case]:
+    """Return questions about a network alone."""
+    return _made(Case, drawn)
+
+
 @cache
 def instances(*, max_nodes: int = 4, max_tasks: int = 6) -> SearchStrategy[Case]:
     """Return a network and a DAG to place on it."""
@@ -167,7 +183,7 @@ def instances(*, max_nodes: int = 4, max_tasks: int = 6) -> SearchStrategy[Case]
     def case(network: Network, codes: DagCodes) -> Case:
         return Case(network, dag=dag_from(codes, [node.id for node in network.nodes]))
 
-    return st.builds(case, networks(max_nodes=max_nodes), dag_codes(max_tasks=max_tasks))
+    return _made(case, networks(max_nodes=max_nodes), dag_codes(max_tasks=max_tasks))
 
 
 @cache
@@ -185,7 +201,7 @@ def traffic(*, max_nodes: int = 6, max_links: int = 10) -> SearchStrategy[Case]:
         )
 
     number = st.integers(0, 2 * max_links)
-    return st.builds(
+    return _made(
         case,
         networks(max_nodes=max_nodes, max_links=max_links, is_bandwidth_optional=True),
         st.lists(number, max_size=max_links),
@@ -196,7 +212,7 @@ def traffic(*, max_nodes: int = 6, max_links: int = 10) -> SearchStrategy[Case]:
 @cache
 def waiting_lines(*, max_length: int = 12) -> SearchStrategy[Case]:
     """Return pushes and pops of tasks that became ready one after another."""
-    return _codes(0, max_length).map(_waiting_line)
+    return _made(_waiting_line, _codes(0, max_length))
 
 
 def _waiting_line(codes: Sequence[int]) -> Case:
@@ -229,4 +245,4 @@ def arrivals(*, max_dags: int = 3) -> SearchStrategy[Case]:
 
     times = st.sampled_from((0, 1, 250_000, 1_000_000))
     listed = st.lists(st.tuples(times, dag_codes(max_tasks=3)), min_size=1, max_size=max_dags)
-    return st.builds(case, networks(max_nodes=3, max_links=2), listed)
+    return _made(case, networks(max_nodes=3, max_links=2), listed)

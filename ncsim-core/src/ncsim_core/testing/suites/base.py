@@ -155,13 +155,6 @@ class ComponentSuite:
         context = make_context(line(2))
         inspect.signature(_factory(subject)).bind(context, **params, **options)
 
-    @check(is_drawn=False)
-    def check_unknown_options_are_refused(self, subject: Subject) -> None:
-        """An option that is not in the schema is the user's error."""
-        name = subject.registered.qualified_name
-        with pytest.raises(ScenarioError, match="no_such_option"):
-            subject.registry.build(self.kind, name, {"no_such_option": 1}, make_context(line(2)))
-
     @check()
     def check_same_question_same_answer(self, subject: Subject, case: Case, other: Case) -> None:
         """The answer is the same when asked again, after another question, and built anew."""

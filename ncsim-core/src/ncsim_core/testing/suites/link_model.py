@@ -22,7 +22,7 @@ class LinkModelSuite(ComponentSuite):
 
     @override
     def cases(self) -> SearchStrategy[Case]:
-        return strategies.networks(is_bandwidth_optional=True).map(Case)
+        return strategies.questions_about(strategies.networks(is_bandwidth_optional=True))
 
     @check()
     def check_every_link_is_rated(self, subject: Subject, case: Case) -> None:

@@ -23,7 +23,7 @@ class RoutingModelSuite(ComponentSuite):
 
     @override
     def cases(self) -> SearchStrategy[Case]:
-        return strategies.networks(max_nodes=5, max_links=10).map(Case)
+        return strategies.questions_about(strategies.networks(max_nodes=5, max_links=10))
 
     @check()
     def check_routes_are_chains(self, subject: Subject, case: Case) -> None:

@@ -1,0 +1,91 @@
+"""Interference models that break their contract, and the good one that they are made of."""
+
+import numpy as np
+from ncsim_core.contracts.interference_model import (
+    Competition,
+    InterferenceModel,
+    PlainSession,
+)
+
+
+class TakeTurns(InterferenceModel):
+    """Gives each of k active links that meet at a node 1/k."""
+
+    def __init__(self, context):
+        ends = [{link.source, link.target} for link in context.network.links]
+        self.near = [
+            {other for other, theirs in enumerate(ends) if mine & theirs} - {link}
+            for link, mine in enumerate(ends)
+        ]
+
+    def contenders(self, link, active):
+        return len(self.near[link].intersection(active))
+
+    def factors(self, links, active):
+        return np.array([1.0 / (1 + self.contenders(link, active)) for link in links])
+
+    def reach(self, changed):
+        return set(changed).union(*(self.near[link] for link in changed))
+
+
+class FactorsAreShares(TakeTurns):
+    def factors(self, links, active):
+        return np.array([1.5 - self.contenders(link, active) for link in links])
+
+
+class AloneALinkKeepsItsBandwidth(TakeTurns):
+    def factors(self, links, active):
+        return 0.9 * super().factors(links, active)
+
+
+class OrderOfLinksChangesNothing(TakeTurns):
+    def factors(self, links, active):
+        first = next(iter(active), None)
+        return np.array([1.0 if link == first else 0.5 for link in links])
+
+
+class AskingForFewerChangesNothing(TakeTurns):
+    def factors(self, links, active):
+        return super().factors(links, links)
+
+
+class ReachHoldsWhatChanged(TakeTurns):
+    def reach(self, changed):
+        return set().union(*(self.near[link] for link in changed))
+
+
+class OutOfReachNothingChanges(TakeTurns):
+    def reach(self, changed):
+        return set(changed)
+
+
+class Forgetful(PlainSession):
+    """Takes no notice of links that are switched off."""
+
+    def _links_to_ask(self, switched):
+        return [link for link in switched if link in self._factor_by_link]
+
+
+class SessionEqualsGlobalRefresh(TakeTurns):
+    def open_session(self):
+        return Forgetful(self)
+
+
+class SessionsDoNotMeet(TakeTurns):
+    def __init__(self, context):
+        super().__init__(context)
+        self.session = PlainSession(self)
+
+    def open_session(self):
+        return self.session
+
+
+class CompetitionCanBeExplained(TakeTurns):
+    def competition(self, links, active):
+        return [Competition(self.contenders(link, active) - 1) for link in links]
+
+
+class OneMoreLinkNeverHelps(TakeTurns):
+    def factors(self, links, active):
+        counts = [self.contenders(link, active) for link in links]
+        return np.array([0.5 if count == 1 else 1.0 for count in counts])
