@@ -33,6 +33,15 @@ def ncsim_components() -> Iterable[Component]:
         ),
         Component(
             kind="interference_model",
+            name="csma_spatial",
+            factory="ncsim_wifi.interference_models.csma_spatial:csma_spatial",
+            summary="Goodput as packets get it: occupancy, capture, hidden stations, back-off.",
+            options="ncsim_wifi:schemas/csma_spatial.json",
+            capabilities=frozenset({"needs_radio"}),
+            source="docs/csma-spatial.md",
+        ),
+        Component(
+            kind="interference_model",
             name="proximity",
             factory="ncsim_wifi.interference_models.proximity:ProximityModel",
             summary="1/k for k active links with midpoints within a radius; no radio needed.",

@@ -22,7 +22,7 @@ def mean_count(stage_visits: FloatArray) -> FloatArray:
     >>> float(mean_count(np.eye(7)[0]))
     7.5
     """
-    return stage_visits @ MEAN_COUNTS
+    return np.asarray(stage_visits @ MEAN_COUNTS)
 
 
 def attempt_probability(count: FloatArray) -> FloatArray:

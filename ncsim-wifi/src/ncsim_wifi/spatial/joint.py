@@ -77,10 +77,7 @@ class JointStages:
         sides = self._sides(attempts, total, own_part, relation)
         half = self.count
         cycles_us = cycle_us[self._station]
-        one, two = (
-            SideRates(*(each[part] for each in sides), cycles_us[part])
-            for part in (slice(0, half), slice(half, None))
-        )
+        one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
         fresh = stationary(chain_rates(one, two))
         gain = self._scene.settings.approximations.stage_gain
         self._joint = fresh if self._joint is None else gain * fresh + (1.0 - gain) * self._joint
@@ -109,3 +106,10 @@ class JointStages:
         rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
         np.add.at(other, side, weight * (rest - total[link]))
         return survives, hit, share / hurt, np.clip(other, 0.0, 1.0)
+
+
+def _side(
+    sides: tuple[FloatArray, FloatArray, FloatArray, FloatArray], cycles_us: FloatArray, part: slice
+) -> SideRates:
+    survives, hit, share, other = (each[part] for each in sides)
+    return SideRates(survives, hit, share, other, cycles_us[part])

@@ -127,7 +127,7 @@ def hidden_loss(
     phi = rate / group_sums(statics, rate)
     own_rate = 1.0 / traffic.cycle_us[other]
     share = own_rate / (own_rate + (group_sums(statics, rate) - rate)[:, None])
-    gaps = _gaps(scene, statics, traffic, kill, sum_on, phi, share)
+    gaps = _gaps(scene, statics, traffic, kill, GroupState(sum_on, phi, share))
     result = survival(
         gaps,
         statics.window_us,
@@ -183,20 +183,27 @@ def _gated(
     return np.asarray(1.0 - lost / np.maximum(1.0 - on_part * (1.0 - before), 1e-9))
 
 
+class GroupState(NamedTuple):
+    """How active the group of each relation is: sum of A', phi_j, and phi_k by stage."""
+
+    sum_on: FloatArray
+    phi: FloatArray
+    share: FloatArray
+
+
 def _gaps(
     scene: Scene,
     statics: Statics,
     traffic: Traffic,
     kill: FloatArray,
-    sum_on: FloatArray,
-    phi: FloatArray,
-    share: FloatArray,
+    state: GroupState,
 ) -> Gaps:
     """Return the gaps between frames of the group of each relation (MODEL 3.8)."""
     other = statics.hostile.station
     times = traffic.times
     others_log = group_sums(statics, np.log1p(-traffic.tau[other])) - np.log1p(-traffic.tau[other])
     others = np.where(statics.hostile.is_member_of_several, np.exp(others_log), 1.0)
+    sum_on, phi, share = state
     law = counter_law(share, others)
     busy_us = group_sums(statics, phi * times.busy_us[other])
     spare_us = group_sums(statics, phi * (times.overhead_us - times.silent_us)[other])

@@ -25,7 +25,7 @@ def overlap_us(
     """
     on = on_air_us / cycle_us
     met = np.minimum(1.0, (protected_us + on_air_us) / cycle_us)
-    return scale * np.minimum(on_air_us, on * protected_us / met)
+    return np.asarray(scale * np.minimum(on_air_us, on * protected_us / met))
 
 
 def meets_probability(on: FloatArray, on_air_us: FloatArray, window_us: FloatArray) -> FloatArray:
@@ -39,7 +39,9 @@ def meets_probability(on: FloatArray, on_air_us: FloatArray, window_us: FloatArr
         window_us: L_o.
     """
     off_us = on_air_us * (1.0 / on - 1.0)
-    return 1.0 - (1.0 - on) * np.maximum(0.0, 1.0 - window_us / np.maximum(off_us, 1e-9))
+    return np.asarray(
+        1.0 - (1.0 - on) * np.maximum(0.0, 1.0 - window_us / np.maximum(off_us, 1e-9))
+    )
 
 
 def joint_kill(

@@ -154,7 +154,7 @@ class Scene:
     @cached_property
     def link_of_station(self) -> BoolArray:
         """Return which links each station has, shape (stations, links)."""
-        return np.arange(self.station_count)[:, None] == self.station[None, :]
+        return np.asarray(np.arange(self.station_count)[:, None] == self.station[None, :])
 
     @cached_property
     def decodes(self) -> BoolArray:

@@ -70,7 +70,7 @@ def statics_of(scene: Scene) -> Statics:
         _added_noise_hazard(scene, near.noise_mW),
         same_slot_loss(scene, near.noise_mW),
         hazards,
-        ack_relations(scene, hazards, is_hidden),
+        ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
         energy,
         gate_masks(scene, energy, hostile, before=True),
         gate_masks(scene, energy, hostile, before=False),
