@@ -14,7 +14,7 @@ SETUP_INPUTS := pyproject.toml constraints.txt $(PACKAGES:%=%/pyproject.toml)
 EDITABLE := -e ./ncsim-core[testing] $(PACKAGES:ncsim-%=-e ./ncsim-%)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format schemas constraints clean
+.PHONY: help setup run paper test check format schemas constraints clean
 
 help:  ## Show what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -39,6 +39,9 @@ endif
 
 run: $(STAMP)  ## Run the example in Solo and Full, then the paper's 108-run study
 	@$(BIN)/python examples/paper/main_job.py
+
+paper: $(STAMP)  ## Reproduce every workflow table and figure of the paper, row by row
+	@$(BIN)/python examples/paper/reproduce.py
 
 test: $(STAMP)  ## Run all tests
 	$(BIN)/python -m pytest

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ncsim_core.engine.simulation import Simulation as Simulation
     from ncsim_core.errors import NcsimError as NcsimError
     from ncsim_core.scenario.loader import load_scenario as load_scenario
+    from ncsim_core.sweep.running import run_sweep as run_sweep
 
 __version__ = "0.1.0"
 
@@ -30,6 +31,7 @@ _ROOMS = {
     "Simulation": "ncsim_core.engine.simulation",
     "load_scenario": "ncsim_core.scenario.loader",
     "prepare": "ncsim_core.api",
+    "run_sweep": "ncsim_core.sweep.running",
     "simulate": "ncsim_core.api",
 }
 
@@ -42,6 +44,7 @@ __all__ = [
     "Simulation",
     "load_scenario",
     "prepare",
+    "run_sweep",
     "simulate",
 ]
 

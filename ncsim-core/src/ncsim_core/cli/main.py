@@ -18,6 +18,7 @@ from ncsim_core.cli import (
     export,
     new,
     plugins,
+    report,
     run,
     schema,
     sweep,
@@ -67,6 +68,7 @@ app.command("new")(new.new)
 app.command("explain")(explain.explain)
 app.command("compare")(compare.compare)
 app.command("sweep")(sweep.sweep)
+app.command("report")(report.report)
 app.add_typer(trace.app, name="trace")
 app.command("export")(export.export)
 app.add_typer(plugins.app, name="plugins")
