@@ -13,7 +13,9 @@ class SchemaKind(StrEnum):
     """A file format with a schema."""
 
     SCENARIO = "scenario"
+    SWEEP = "sweep"
     TRACE = "trace"
+    METRICS = "metrics"
 
 
 def schema(
@@ -52,6 +54,15 @@ def _composed(kind: SchemaKind) -> Mapping[str, object]:
             from ncsim_core.scenario.schema import compose_schema
 
             return compose_schema(get_registry())
+        case SchemaKind.SWEEP:
+            from ncsim_core.registry import get_registry
+            from ncsim_core.sweep.schema import sweep_schema
+
+            return sweep_schema(get_registry())
+        case SchemaKind.METRICS:
+            from ncsim_core.metrics.schema import metrics_schema
+
+            return metrics_schema()
         case SchemaKind.TRACE:
             from ncsim_core.trace.schema import trace_schema
 
