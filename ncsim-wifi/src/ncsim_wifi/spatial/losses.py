@@ -18,7 +18,7 @@ from ncsim_wifi.spatial.statics import BEFORE_CTS_us, Statics
 
 LARGEST_ON = 0.97
 LEAST_ON = 1e-9
-CTS_SLOTS = 4.2  # slots in which two RTS that do not hear each other collide (MODEL 3.8)
+CTS_SLOTS = 4.2  # slots in which two RTS that do not hear each other collide; calibrated
 
 
 class Traffic(NamedTuple):
@@ -138,7 +138,7 @@ def hidden_loss(
     on_part = gaps.on_air_us[:, None] / gaps.cycle_us
     survives, missed = (_gated(each, on_part, *gates) for each in result)
     by_cts = statics.by_cts[:, None]
-    rts_missed = np.maximum(0.0, 1.0 - CTS_SLOTS / WINDOWS) ** 4
+    rts_missed = _rts_survival(scene, statics)
     survives = np.where(by_cts, rts_missed, survives)
     missed = np.where(by_cts, rts_missed, missed)
     time = traffic.stages[other] * traffic.cycle_us[other]
@@ -157,6 +157,17 @@ def hidden_loss(
         alone,
         correction,
     )
+
+
+def _rts_survival(scene: Scene, statics: Statics) -> FloatArray:
+    """Return what RTS survive of another that cannot hear them before the CTS (MODEL 3.8).
+
+    A frame strong enough to be decoded all the same suffers only from one that came earlier.
+    """
+    hostile = statics.hostile
+    loss = statics.same_slot_loss[hostile.link, hostile.station]
+    part = np.where(loss > 0.0, 1.0, 0.5)
+    return np.asarray(1.0 - part[:, None] * CTS_SLOTS / WINDOWS)
 
 
 def _correction(

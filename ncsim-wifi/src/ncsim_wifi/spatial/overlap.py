@@ -60,4 +60,4 @@ def joint_kill(
     chance = np.where(helper_sets[None], present[:, None, :], 1.0 - present[:, None, :])
     weight = omega * chance.prod(axis=2)
     kill = (weight * -np.expm1(-delta / 2.0)).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-300)
-    return np.minimum(kill, LARGEST_KILL)
+    return np.asarray(np.minimum(kill, LARGEST_KILL))
