@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, NamedTuple
 
@@ -22,6 +23,10 @@ from ncsim_core.units import us_from_s
 
 GRACE_s: Final = 1.0
 """What a run that does not look at the clock gets beyond its wall limit before its worker ends."""
+
+
+FIRST_RUN_s: Final = 5.0
+"""What the first run of a worker gets on top, for it imports the plug-ins."""
 
 
 class Item(NamedTuple):
@@ -73,6 +78,22 @@ def run_chunk(plan_text: str, items: Sequence[Item]) -> list[ResultRow]:
     return [_result(item, resolver) for item in items]
 
 
+@dataclass
+class _Worker:
+    """What this process remembers."""
+
+    has_run: bool = False
+
+
+_WORKER = _Worker()
+
+
+@lru_cache(maxsize=1)
+def _nowhere() -> int:
+    """Return a descriptor, open as long as this process, for a traceback that nobody reads."""
+    return os.open(os.devnull, os.O_WRONLY)
+
+
 @lru_cache(maxsize=4)
 def _resolver(plan_text: str) -> Resolver:
     return Resolver(plan_from_json(plan_text))
@@ -95,6 +116,7 @@ def _result(item: Item, resolver: Resolver) -> ResultRow:
         text = f"{type(error).__name__}: {error}"
         return failed_row(item.key, text, time.perf_counter() - started_s)
     finally:
+        _WORKER.has_run = True
         if limits.wall_s is not None:
             faulthandler.cancel_dump_traceback_later()
 
@@ -103,9 +125,8 @@ def _set_alarm(limits: RunLimits) -> None:
     """End this worker if a run hangs where the clock is not looked at; needs no GIL."""
     is_expendable = multiprocessing.parent_process() is not None
     if limits.wall_s is not None and is_expendable:
-        with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - a descriptor
-            duplicate = os.dup(nowhere.fileno())
-        faulthandler.dump_traceback_later(limits.wall_s + GRACE_s, exit=True, file=duplicate)
+        slack_s = GRACE_s if _WORKER.has_run else GRACE_s + FIRST_RUN_s
+        faulthandler.dump_traceback_later(limits.wall_s + slack_s, exit=True, file=_nowhere())
 
 
 def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: float) -> ResultRow:
@@ -113,7 +134,7 @@ def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: flo
     max_time_us = None if limits.max_time_s is None else us_from_s(limits.max_time_s)
     engine_limits = Limits(limits.max_events, max_time_us)
     simulation = Simulation(assembly.network, assembly.models, engine_limits)
-    outcome = _run(simulation, limits.wall_s, started_s)
+    outcome = _run(simulation, limits.wall_s)
     wall_s = time.perf_counter() - started_s
     if outcome is None:
         error = f"the wall limit of {limits.wall_s:g} s"
@@ -133,11 +154,11 @@ def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: flo
     )
 
 
-def _run(simulation: Simulation, wall_s: float | None, started_s: float) -> Outcome | None:
+def _run(simulation: Simulation, wall_s: float | None) -> Outcome | None:
     """Return how a run ended; ``None`` if time on the clock ran out."""
     if wall_s is None:
         return simulation.run()
-    deadline_s = started_s + wall_s
+    deadline_s = time.perf_counter() + wall_s
     while simulation.outcome is None:
         simulation.step()
         if time.perf_counter() > deadline_s and simulation.outcome is None:
