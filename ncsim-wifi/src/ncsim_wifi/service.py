@@ -1,6 +1,6 @@
 """What is left of a link under contention and hidden interference: the paper's factors."""
 
-from ncsim_wifi.mac.efficiency import efficiency
+from ncsim_wifi.mac.efficiency import channel_goodput_Mbps
 from ncsim_wifi.mac.timing import Timing
 from ncsim_wifi.phy.mcs import RateTable
 
@@ -44,5 +44,5 @@ def combined_factor(
         return 0.0
     if stations == 1 and effective_Mbps == clean_Mbps:
         return 1.0
-    served = effective_Mbps * efficiency(stations, effective_Mbps, timing)
-    return served / (stations * clean_Mbps * efficiency(1, clean_Mbps, timing))
+    served_Mbps = channel_goodput_Mbps(stations, effective_Mbps, timing)
+    return served_Mbps / (stations * channel_goodput_Mbps(1, clean_Mbps, timing))

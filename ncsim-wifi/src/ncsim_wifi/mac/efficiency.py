@@ -60,14 +60,27 @@ def efficiency(stations: int, rate_Mbps: float, timing: Timing) -> float:
     return efficiency_at(fixed_point(stations), stations, rate_Mbps, timing)
 
 
+@lru_cache(maxsize=65536)
+def channel_goodput_Mbps(stations: int, rate_Mbps: float, timing: Timing) -> float:
+    """Return R eta(n, R), what all n stations deliver together; 0 at rate 0.
+
+    R cancels: it is P_S L / E[slot]. Computed so, two rates that need equally many symbols
+    give the same number to the last bit, and a higher rate never delivers less.
+
+    Source: Eq. 8 (``eq:eta``) times R.
+    """
+    if rate_Mbps <= 0.0:
+        return 0.0
+    shares = slot_shares(fixed_point(stations).tau, stations)
+    return shares.success * timing.payload_bits / mean_slot_us(shares, rate_Mbps, timing)
+
+
 def station_goodput_MBps(stations: int, rate_Mbps: float, timing: Timing) -> float:
     """Return what each of n contending stations delivers, R eta(n, R) / (8 n); 0 at rate 0.
 
     Source: below Eq. 8 (``eq:eta``); with n = 1 the clean solo bandwidth B above Eq. 12.
     """
-    if rate_Mbps <= 0.0:
-        return 0.0
-    return rate_Mbps * efficiency(stations, rate_Mbps, timing) / (MEGABITS_PER_MEGABYTE * stations)
+    return channel_goodput_Mbps(stations, rate_Mbps, timing) / (MEGABITS_PER_MEGABYTE * stations)
 
 
 def data_airtime_fraction(rate_Mbps: float, timing: Timing) -> float:

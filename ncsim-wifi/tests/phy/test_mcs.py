@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+from ncsim_core.errors import ScenarioError
+from ncsim_wifi.phy.mcs import (
+    RateTable,
+    parse_table,
+    phy_rate_Mbps,
+    rate_table,
+    read_table,
+    table_names,
+)
+from ncsim_wifi.radio import Radio
+
+
+@pytest.mark.parametrize("name", table_names())
+def test_every_table_is_readable_and_rises(name):
+    table = read_table(name)
+
+    assert len(table.snr_min_dB) == len(table.rate_Mbps) >= 8
+    assert table.snr_min_dB[0] == 5.0
+
+
+def test_the_three_standards_are_there():
+    assert {"n", "ac", "ax"} <= set(table_names())
+
+
+@pytest.mark.parametrize(
+    ("name", "fastest_Mbps", "schemes"), [("n", 65.0, 8), ("ac", 86.7, 10), ("ax", 143.4, 12)]
+)
+def test_tables_end_where_the_specification_ends_them(name, fastest_Mbps, schemes):
+    table = read_table(name)
+
+    assert (table.rate_Mbps[-1], len(table.rate_Mbps)) == (fastest_Mbps, schemes)
+
+
+def test_rates_are_selected_at_the_threshold_and_not_below():
+    snr_dB = np.array([4.999, 5.0, 7.999, 8.0, 41.0, 99.0])
+
+    assert phy_rate_Mbps(snr_dB, read_table("ax")).tolist() == [0.0, 8.6, 8.6, 17.2, 143.4, 143.4]
+
+
+@pytest.mark.parametrize(("width", "factor"), [(20, 1), (40, 2), (80, 4), (160, 8)])
+def test_rates_grow_in_proportion_to_the_channel_width(width, factor):
+    table = rate_table(Radio(channel_width_mhz=width))
+
+    assert table.rate_Mbps == tuple(factor * rate for rate in read_table("ax").rate_Mbps)
+    assert table.snr_min_dB == read_table("ax").snr_min_dB
+
+
+def test_a_misspelt_standard_is_answered_with_a_suggestion():
+    with pytest.raises(ScenarioError, match=r"no rate table 'ax2'.*did you mean 'ax'"):
+        read_table("ax2")
+
+
+def test_a_table_that_does_not_rise_is_refused():
+    with pytest.raises(ScenarioError, match="increase strictly"):
+        RateTable((5.0, 5.0), (8.6, 17.2))
+
+
+def test_a_table_is_three_columns_of_text():
+    assert parse_table(["mcs,snr_min_dB,rate_Mbps", "0,5,8.6"]) == RateTable((5.0,), (8.6,))

@@ -1,0 +1,42 @@
+import numpy as np
+import pytest
+from ncsim_wifi.phy.shadowing import pair_draw, shadowing_dB
+
+IDS = [f"n{i}" for i in range(60)]
+
+
+def test_draws_are_standard_normal():
+    draws = np.array([pair_draw(42, a, b) for a in IDS for b in IDS if a < b])
+
+    assert draws.mean() == pytest.approx(0.0, abs=0.08)
+    assert draws.std() == pytest.approx(1.0, abs=0.06)
+
+
+def test_shadowing_is_symmetric_and_none_on_the_diagonal():
+    loss_dB = shadowing_dB(IDS[:5], 4.0, seed=7)
+
+    assert (loss_dB == loss_dB.T).all()
+    assert not loss_dB.diagonal().any()
+    assert np.count_nonzero(loss_dB) == 20
+
+
+def test_adding_a_node_or_listing_otherwise_changes_no_draw():
+    before_dB = shadowing_dB(["a", "b", "c"], 6.0, seed=3)
+    after_dB = shadowing_dB(["c", "new", "b", "a"], 6.0, seed=3)
+
+    assert after_dB[np.ix_([3, 2, 0], [3, 2, 0])].tolist() == before_dB.tolist()
+
+
+def test_another_seed_draws_anew_and_sigma_only_scales():
+    one, same, other = (shadowing_dB(["a", "b"], s, k) for s, k in ((1.0, 1), (3.0, 1), (1.0, 2)))
+
+    assert same[0, 1] == 3.0 * one[0, 1]
+    assert other[0, 1] != one[0, 1]
+
+
+def test_ids_that_run_together_are_kept_apart():
+    assert pair_draw(1, "a", "bc") != pair_draw(1, "ab", "c")
+
+
+def test_no_sigma_means_no_shadowing():
+    assert not shadowing_dB(IDS, 0.0, seed=1).any()

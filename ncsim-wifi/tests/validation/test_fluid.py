@@ -1,0 +1,33 @@
+import math
+
+import pytest
+from ncsim_wifi.validation import fluid
+from ncsim_wifi.validation.engine_runs import measure
+from ncsim_wifi.validation.scenes import Flow, parallel, single
+
+
+def test_a_lone_flow_takes_size_over_goodput():
+    scene = single(30.0)
+
+    assert fluid.ends_s(scene) == pytest.approx([1000.0 / fluid.clean_goodput_MBps(0, scene)])
+
+
+def test_a_flow_that_gets_nothing_never_ends():
+    assert fluid.ends_s(single(140.0)) == [math.inf]
+
+
+def test_a_late_flow_changes_rates_when_it_starts():
+    scene = parallel(2, 20.0, [Flow(0, 10.0), Flow(1, 10.0, 1.0)])
+    alone_MBps, shared_MBps = fluid.rates_MBps([0], scene)[0], fluid.rates_MBps([0, 1], scene)[0]
+
+    assert fluid.ends_s(scene)[0] == pytest.approx(1.0 + (10.0 - alone_MBps) / shared_MBps)
+
+
+def test_the_rate_log_averages_over_windows():
+    rates = measure(parallel(2, 20.0, [Flow(0, 10.0), Flow(1, 1.0, 1.0)])).rates
+
+    assert rates.mean_rate_MBps(1, 0.0, 1.0) == 0.0
+    assert rates.mean_rate_MBps(0, 0.0, 1.0) == pytest.approx(3.783, abs=5e-4)
+    assert rates.mean_rate_MBps(0, 0.5, 1.25) == pytest.approx(
+        (0.5 * 3.78309 + 0.25 * 1.94249) / 0.75, abs=1e-4
+    )
