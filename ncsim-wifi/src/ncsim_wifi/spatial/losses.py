@@ -138,7 +138,7 @@ def hidden_loss(
     on_part = gaps.on_air_us[:, None] / gaps.cycle_us
     survives, missed = (_gated(each, on_part, *gates) for each in result)
     by_cts = statics.by_cts[:, None]
-    rts_missed = _rts_survival(scene, statics)
+    rts_missed = _rts_survival(statics)
     survives = np.where(by_cts, rts_missed, survives)
     missed = np.where(by_cts, rts_missed, missed)
     time = traffic.stages[other] * traffic.cycle_us[other]
@@ -159,7 +159,7 @@ def hidden_loss(
     )
 
 
-def _rts_survival(scene: Scene, statics: Statics) -> FloatArray:
+def _rts_survival(statics: Statics) -> FloatArray:
     """Return what RTS survive of another that cannot hear them before the CTS (MODEL 3.8).
 
     A frame strong enough to be decoded all the same suffers only from one that came earlier.

@@ -16,8 +16,6 @@ class Terms:
         silence: Who does not understand a frame waits another time after it (EIFS).
         energy_sensing: Stations too weak to be sensed alone are sensed together.
         far_noise: Interferers beyond the nearest raise the noise.
-        arrival_order: Simulator artefact: of two frames that start in the same slot the one
-            that reaches a receiver first is decoded, if it is strong enough.
         dead_below_threshold: Simulator artefact: links below the preamble threshold get nothing.
     """
 
@@ -29,7 +27,6 @@ class Terms:
     silence: bool = True
     energy_sensing: bool = True
     far_noise: bool = True
-    arrival_order: bool = False
     dead_below_threshold: bool = False
 
 

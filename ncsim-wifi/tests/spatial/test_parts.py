@@ -1,0 +1,87 @@
+"""Occupancy, belief, chains and sums against plain ways of computing them."""
+
+import numpy as np
+import pytest
+from ncsim_wifi.spatial.belief import clique_belief
+from ncsim_wifi.spatial.chains import STAGES, ChainRates, stationary
+from ncsim_wifi.spatial.gaps import power_sums
+from ncsim_wifi.spatial.hazard import hazard, hazard_table
+from ncsim_wifi.spatial.occupancy import occupancy_model, occupancy_of
+from ncsim_wifi.spatial.relay import maximal_cliques
+
+
+def line(count):
+    senses = np.zeros((count, count), bool)
+    for at in range(count - 1):
+        senses[at, at + 1] = senses[at + 1, at] = True
+    return senses
+
+
+def test_belief_is_exact_on_a_tree_of_cliques():
+    activity = np.array([3.0, 1.0, 5.0, 2.0, 0.5])
+
+    exact = occupancy_model(line(5), 1000)(activity)
+    belief = clique_belief(line(5))(activity)
+
+    assert belief.idle == pytest.approx(exact.idle, rel=1e-5)
+    two_away = np.array([0, 1, 2]), np.array([2, 3, 4])  # farther on it is approximate
+    assert belief.on[two_away] == pytest.approx(exact.on[two_away], rel=1e-5)
+    assert belief.clear[0, 1] == pytest.approx(exact.clear[0, 1], rel=1e-5)
+
+
+def test_components_of_the_sensing_graph_are_independent():
+    senses = np.zeros((4, 4), bool)
+    senses[:2, :2] = senses[2:, 2:] = line(2)
+    activity = np.array([3.0, 1.0, 5.0, 2.0])
+
+    apart = occupancy_of(senses, 1000)(activity)
+    together = occupancy_model(senses, 1000)(activity)
+
+    for one, other in zip(apart, together, strict=True):
+        assert one == pytest.approx(other)
+
+
+def test_stationary_distribution_balances_the_whole_chain():
+    rng = np.random.default_rng(1)
+    rates = ChainRates(*(rng.uniform(0.1, 1.0, (3, STAGES, STAGES)) for _ in range(5)))
+
+    joint = stationary(rates)
+
+    targets = [(0, None), (None, 0), (1, 1), (1, None), (None, 1)]
+    for chain in range(3):
+        flow = np.zeros((STAGES, STAGES))
+        for rate, (da, db) in zip(rates, targets, strict=True):
+            for a in range(STAGES):
+                for b in range(STAGES):
+                    to_a = a if da is None else (a + 1) % STAGES if da else 0
+                    to_b = b if db is None else (b + 1) % STAGES if db else 0
+                    moved = rate[chain, a, b] * joint[chain, a, b]
+                    flow[to_a, to_b] += moved
+                    flow[a, b] -= moved
+        assert np.abs(flow).max() < 1e-12
+        assert joint[chain].sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("base", [1.0, 0.9, 0.998])
+def test_power_sums_are_sums(base):
+    n = np.arange(1024)
+
+    sums = power_sums(np.array(base), np.array(1023.0))
+
+    for power, value in enumerate(sums):
+        assert value == pytest.approx((n**power * base**n).sum(), rel=1e-7)
+
+
+def test_hazard_meets_every_point_of_the_table():
+    table = hazard_table()
+
+    for scheme, points_dB in enumerate(table.ratio_dB):
+        assert hazard(np.array(scheme), points_dB) == pytest.approx(np.exp(table.ln_hazard))
+
+
+def test_maximal_cliques_of_a_triangle_with_a_tail():
+    related = np.zeros((4, 4), bool)
+    for one, other in [(0, 1), (0, 2), (1, 2), (2, 3)]:
+        related[one, other] = related[other, one] = True
+
+    assert sorted(tuple(sorted(c)) for c in maximal_cliques(related)) == [(0, 1, 2), (2, 3)]

@@ -1,0 +1,93 @@
+"""The solver: symmetries it must have, and Bianchi on cliques."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ncsim_wifi.mac.efficiency import station_goodput_MBps
+from ncsim_wifi.mac.timing import AxTiming
+from ncsim_wifi.phy.mcs import read_table
+from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.settings import Settings, Terms
+from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
+
+SCHEME = 5
+RATE_Mbps = read_table("ax").rate_Mbps[SCHEME]
+
+
+def plant(senders_m, receivers_m, *, rts_cts=False, terms=None):
+    count = len(senders_m)
+    at_m = np.array([*senders_m, *receivers_m], float)
+    apart_m = np.hypot(*(at_m[:, None] - at_m[None]).transpose(2, 0, 1))
+    return Plant(
+        tuple(f"l{link:02d}" for link in range(count)),
+        np.arange(count),
+        np.arange(count) + count,
+        np.full(count, SCHEME),
+        np.full(count, RATE_Mbps),
+        20.0 - 46.42 - 30.0 * np.log10(np.maximum(apart_m, 1.0)),
+        Settings(rts_cts=rts_cts, terms=terms or Terms()),
+    )
+
+
+def parallel(count, spacing_m, **options):
+    rows_m = [spacing_m * row for row in range(count)]
+    return plant([(0.0, y) for y in rows_m], [(30.0, y) for y in rows_m], **options)
+
+
+scenes = st.lists(
+    st.tuples(*[st.floats(0, 250)] * 2, *[st.floats(-20, 20)] * 2), min_size=2, max_size=7
+)
+
+
+def scattered(places, *, rts_cts):
+    return plant(
+        [(x, y) for x, y, _, _ in places],
+        [(x + dx + 1, y + dy + 1) for x, y, dx, dy in places],
+        rts_cts=rts_cts,
+    )
+
+
+@settings(max_examples=40, deadline=None)
+@given(scenes, st.booleans(), st.randoms(use_true_random=False))
+def test_goodput_lies_between_zero_and_solo_whatever_the_order(places, rts_cts, random):
+    scene = scattered(places, rts_cts=rts_cts)
+    order = list(range(len(places)))
+    straight = saturated_goodputs_MBps(scene, order)
+    random.shuffle(order)
+
+    shuffled = saturated_goodputs_MBps(scene, order)
+
+    assert np.isfinite(straight).all()
+    assert (straight >= 0).all()
+    assert (straight <= scene.solo_MBps * 1.02).all()
+    assert shuffled.tolist() == straight[order].tolist()
+
+
+@pytest.mark.parametrize("rts_cts", [False, True])
+def test_a_link_alone_gets_its_solo_goodput(rts_cts):
+    scene = parallel(1, 5.0, rts_cts=rts_cts)
+
+    assert saturated_goodputs_MBps(scene, [0])[0] == pytest.approx(scene.solo_MBps[0])
+
+
+def test_links_far_apart_do_not_disturb_each_other():
+    scene = parallel(2, 2000.0)
+
+    assert saturated_goodputs_MBps(scene, [0, 1]) == pytest.approx(scene.solo_MBps)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 8, 12])
+def test_a_clique_shares_like_bianchi(count):
+    shares_MBps = saturated_goodputs_MBps(parallel(count, 1.0), range(count))
+
+    bianchi_MBps = station_goodput_MBps(count, RATE_Mbps, AxTiming())
+    assert shares_MBps == pytest.approx(np.full(count, bianchi_MBps), rel=0.03)
+
+
+def test_hidden_pair_gets_what_joint_chains_give_and_not_what_independence_gives():
+    with_chains = saturated_goodputs_MBps(parallel(2, 80.0), [0, 1])
+    without = saturated_goodputs_MBps(parallel(2, 80.0, terms=Terms(joint_chains=False)), [0, 1])
+
+    assert with_chains == pytest.approx([1.37, 1.37], rel=0.04)
+    assert without[0] < 1.1
