@@ -57,7 +57,7 @@ export class Lanes {
   /** Interval under an instant, the last begun first; -1 if there is none. */
   hit(lane: Lane, time: number, slack = 0): number {
     const { start, end, reach } = this;
-    for (let i = lowerBound(start.data, lane.to, time + slack, lane.from) - 1; i >= lane.from; i--) {
+    for (let i = upperBound(start.data, lane.to, time + slack, lane.from) - 1; i >= lane.from; i--) {
       if (reach.data[i] < time - slack) break;
       if (start.data[i] <= time + slack && end.data[i] >= time - slack) return i;
     }
@@ -147,7 +147,7 @@ export class Lanes {
       case "dag": return this.paired(run.dags.length, (i) => run.dags[i].id, run.tkDag.data, (x) => run.exDag.data[x]);
       case "node":
         return this.paired(run.nodes.length, (i) => run.nodes[i].id, run.tkNode.data,
-          (x) => run.tkNode.data[run.exSource.data[x]]).filter((group) => group.isTasks || group.spans.length > 0);
+          (x) => run.tkNode.data[run.exSource.data[x]]);
     }
   }
 
@@ -173,7 +173,8 @@ export class Lanes {
       groups[ofTask[task] * 2].spans.push({ id: task, from, to: Number.isNaN(to) ? run.end : to });
     }
     for (const span of this.transferSpans()) groups[ofTransfer(span.id) * 2 + 1].spans.push(span);
-    return groups;
+    // Who is idle throughout is left out; a lane without tasks stays to carry the name.
+    return groups.filter((group, i) => group.spans.length > 0 || (group.isTasks && groups[i + 1].spans.length > 0));
   }
 
   private transferSpans(): Span[] {

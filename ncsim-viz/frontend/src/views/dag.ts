@@ -26,6 +26,7 @@ function draw(p: Painter, ctx: Context, box: Box): void {
   if (!dag) return;
   const at = placed(ctx, box);
   const chain = chainSets(ctx);
+  const used = [...new Set(run.tkNode.data.subarray(dag.firstTask, dag.firstTask + dag.tasks))].sort((a, b) => a - b);
   let most = 1e-9;
   for (let x = dag.firstEdge; x < dag.firstEdge + dag.edges; x++) most = Math.max(most, run.exSize.data[x]);
   for (let x = dag.firstEdge; x < dag.firstEdge + dag.edges; x++) {
@@ -39,7 +40,7 @@ function draw(p: Painter, ctx: Context, box: Box): void {
   for (let task = dag.firstTask; task < dag.firstTask + dag.tasks; task++) {
     const [x, y] = [at.x(task), at.y(task)];
     const node = run.tkNode.data[task];
-    const category = Math.max(0, node) % colours.categories.length;
+    const category = Math.max(0, used.indexOf(node)) % colours.categories.length;
     const isSelected = ui.selection?.kind === "task" && ui.selection.id === task;
     p.rect(x - at.size / 2, y - 15, at.size, 30, { fill: colours.categories[category], stroke: isSelected ? colours.select : chain.tasks.has(task) ? colours.bind : colours.paper, width: isSelected || chain.tasks.has(task) ? 3 : 1 });
     const ink = colours.onCategory[category];

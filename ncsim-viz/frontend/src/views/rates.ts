@@ -32,7 +32,8 @@ function draw(p: Painter, ctx: Context, box: Box): void {
   all.slice(0, MAX).forEach((x, row) => {
     const top = TOP + row * ROW;
     const floor = top + ROW - 8;
-    const solo = run.soloRate(x) || 1;
+    const solo = run.soloRate(x);
+    const most = run.stepsOf(x).reduce((high, step) => Math.max(high, run.stRate.data[step]), 1e-12);
     const height = ROW - 20;
     const isSelected = ui.selection?.kind === "transfer" && ui.selection.id === x;
     p.text(8, top + 18, fitted(run.transferName(x), LEFT - 14, 12), { fill: isSelected ? colours.select : colours.ink, size: 12, bold: true });
@@ -40,15 +41,17 @@ function draw(p: Painter, ctx: Context, box: Box): void {
     p.clip(LEFT, top, s.right - LEFT, ROW, () => {
       const from = xOf(s, run.servedFrom(x));
       const end = xOf(s, Number.isNaN(run.servedTo(x)) ? run.end : run.servedTo(x));
-      p.line([from, floor - height, end, floor - height], { stroke: colours.muted, dash: [4, 3] });
+      if (solo <= most * 1.05) p.line([from, floor - (height * solo) / most, end, floor - (height * solo) / most], { stroke: colours.muted, dash: [4, 3] });
       const steps = run.stepsOf(x);
       steps.forEach((step, k) => {
         const x0 = xOf(s, run.stepTime(step));
         const x1 = k + 1 < steps.length ? xOf(s, run.stepTime(steps[k + 1])) : end;
-        const y = floor - height * Math.min(1, run.stRate.data[step] / solo);
+        const y = floor - height * (run.stRate.data[step] / most);
         const fill = colours.categories[run.exDag.data[x] % 8];
         p.rect(x0, y, Math.max(0.5, x1 - x0), floor - y, { fill, alpha: 0.75 });
         p.line([x0, y, x1, y], { stroke: colours.ink });
+        const label = number(run.stRate.data[step], 2);
+        if (x1 - x0 > 8 + label.length * 6) p.text((x0 + x1) / 2, Math.max(top + 8, Math.min(y - 6, floor - 10)), label, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
         if (run.stRate.data[step] === 0) p.text((x0 + x1) / 2, floor - 8, "⏸", { fill: colours.bad, size: 11, anchor: "middle" });
         p.text(x0, floor + 4, run.rcIsStart.data[run.stRecalc.data[step]] ? "▲" : "●", { fill: colours.muted, size: 8, anchor: "middle" });
       });
@@ -63,7 +66,7 @@ function draw(p: Painter, ctx: Context, box: Box): void {
 export const rates: View = {
   id: "rates",
   title: "Rates",
-  summary: (ctx) => `Rate over time of ${count(shownTransfers(ctx).length, "transfer")}; the area is its size; dashed is the rate alone; ▲ a start and ● a finish of a transfer caused the step`,
+  summary: (ctx) => `Rate over time of ${count(shownTransfers(ctx).length, "transfer")}; each row is as high as its own greatest rate; the area is its size; dashed is the rate alone; ▲ a start and ● a finish of a transfer caused the step`,
   height: (ctx) => TOP + Math.min(MAX, shownTransfers(ctx).length) * ROW + 24,
   draw,
   scale: scaleOf,
