@@ -119,18 +119,15 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
         if len(sets.station)
         else np.zeros(0, np.int64)
     )
-    row = row[relation]
-    holds_it, holds_hostile = [], []
-    for r, at in zip(relation.tolist(), row.tolist(), strict=True):
-        member = sets.member[at]
-        rivals = hostile.station[(hostile.link == hostile.link[r])]
-        rivals = rivals[rivals != hostile.station[r]]
-        holds_it.append(sets.subsets[:, member == other[r]].any(axis=1))
-        holds_hostile.append(sets.subsets[:, np.isin(member, rivals)].any(axis=1))
-    shape = (len(relation), len(sets.subsets))
-    it = np.array(holds_it, np.bool_).reshape(shape)
-    rid_of_others = ~np.array(holds_hostile, np.bool_).reshape(shape)
-    return GateMasks(relation, row, it & rid_of_others, ~it & rid_of_others)
+    member = sets.member[row[relation]]
+    is_hostile = np.zeros((len(scene.links), scene.station_count), np.bool_)
+    is_hostile[hostile.link, hostile.station] = True
+    is_rival = is_hostile[hostile.link[relation][:, None], member] & (member >= 0)
+    is_rival &= member != hostile.station[relation][:, None]
+    held = sets.subsets.T.astype(np.float64)
+    it = (member == other[relation][:, None]).astype(np.float64) @ held > 0.0
+    rid_of_others = is_rival.astype(np.float64) @ held == 0.0
+    return GateMasks(relation, row[relation], it & rid_of_others, ~it & rid_of_others)
 
 
 def gate(sets: EnergySets, weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
