@@ -17,6 +17,7 @@ from ncsim_core.cli import (
     explain,
     export,
     new,
+    plot,
     plugins,
     report,
     run,
@@ -69,6 +70,7 @@ app.command("explain")(explain.explain)
 app.command("compare")(compare.compare)
 app.command("sweep")(sweep.sweep)
 app.command("report")(report.report)
+app.command("plot")(plot.plot)
 app.add_typer(trace.app, name="trace")
 app.command("export")(export.export)
 app.add_typer(plugins.app, name="plugins")
