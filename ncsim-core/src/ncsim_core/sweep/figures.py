@@ -9,7 +9,6 @@ from ncsim_core.metrics.statistics import mean_interval
 from ncsim_core.sweep.report import column_of, parameters, policies
 from ncsim_core.sweep.table import Table, shown_value
 
-
 MAX_LEGEND = 12
 """Lines that a legend names; more would hide the picture."""
 
