@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 
-def plot(  # noqa: PLR0913 - one parameter per option
+def plot(
     study: Annotated[Path, typer.Argument(metavar="STUDY", help="Folder of a sweep.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture: .svg, .pdf or .png.")],
     *,
