@@ -56,9 +56,9 @@ def test_placements_are_those_of_saga(name):
 
 @pytest.mark.parametrize("name", ["heft", "cpop"])
 def test_a_wide_network_is_planned_with_arrays_and_as_saga_does(name):
-    places = [None] * 40
+    places = [None] * 50
     network = network_of(
-        places, [(k, k + 1) for k in range(39)], capacities=[80.0, 100.0, 100.0, 200.0]
+        places, [(k, k + 1) for k in range(49)], capacities=[80.0, 100.0, 100.0, 200.0]
     )
     edges = [(a, b) for a in range(12) for b in range(12, 24) if (a + b) % 3 == 0]
     dag = dag_of(edges, tasks=24, cost=300.0, size_MB=7.0)

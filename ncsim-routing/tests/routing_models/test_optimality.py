@@ -75,7 +75,7 @@ def simple_routes(net, at, target, visited=frozenset(), so_far=()):
 
 
 @pytest.mark.parametrize(("model", "cost"), MODELS)
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)
 @given(net=networks())
 def test_no_simple_route_is_better(model, cost, net):
     routing = model(BuildContext(net))
@@ -92,7 +92,7 @@ def test_no_simple_route_is_better(model, cost, net):
 
 
 @pytest.mark.parametrize(("model", "cost"), MODELS)
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)
 @given(net=networks())
 def test_one_search_for_all_targets_answers_as_one_for_each(model, cost, net):
     del cost
@@ -104,7 +104,7 @@ def test_one_search_for_all_targets_answers_as_one_for_each(model, cost, net):
 
 
 @pytest.mark.parametrize(("model", "cost"), MODELS)
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)
 @given(net=networks(), data=st.data())
 def test_the_order_in_which_nodes_and_links_are_listed_changes_nothing(model, cost, net, data):
     del cost

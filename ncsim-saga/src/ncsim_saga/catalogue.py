@@ -21,6 +21,7 @@ class CatalogueEntry:
             so it runs in a child process with ``PYTHONHASHSEED=0`` (SPEC 22).
         draws: It draws from the global ``random`` generator (SPEC 22).
         requires: Requirement beyond the distribution's own.
+        capabilities: What it claims beyond its contract.
         source: Where the algorithm is published.
     """
 
@@ -31,6 +32,7 @@ class CatalogueEntry:
     walks_strings: bool = False
     draws: bool = False
     requires: tuple[str, ...] = ()
+    capabilities: frozenset[str] = frozenset()
     source: str = ""
 
     @property
@@ -112,6 +114,7 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "CpopScheduler",
             "Critical path on one processor.",
             _OPTIONS_OF_NATIVE,
+            capabilities=frozenset({"scale_invariant"}),
             source="https://doi.org/10.1109/71.993206",
         ),
         CatalogueEntry("dps", "DPSScheduler", "Dynamic priority scheduling."),
@@ -150,6 +153,7 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "HeftScheduler",
             "Heterogeneous earliest finish time.",
             _OPTIONS_OF_NATIVE,
+            capabilities=frozenset({"scale_invariant"}),
             source="https://doi.org/10.1109/71.993206",
         ),
         CatalogueEntry("maxmin", "MaxMinScheduler", "Largest least completion time first."),

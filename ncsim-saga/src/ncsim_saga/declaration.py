@@ -28,6 +28,7 @@ def _component(entry: CatalogueEntry) -> Component:
         options=_schema(entry),
         params={} if entry.options else {"name": entry.name},
         requires=entry.requires,
+        capabilities=entry.capabilities,
         source=entry.source,
     )
 

@@ -39,7 +39,11 @@ class Worker:
             stderr=self._complaints,
             text=True,
             encoding="utf-8",
-            env={**os.environ, "PYTHONHASHSEED": "0"},
+            env={
+                **os.environ,
+                "PYTHONHASHSEED": "0",
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
         )
 
     def ask(self, line: str) -> str:
