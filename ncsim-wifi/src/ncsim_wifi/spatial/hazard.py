@@ -47,7 +47,7 @@ def ln_hazard_at(scheme: int, ratio_dB: float) -> float:
 
     Source: MODEL 1, frame loss.
 
-    >>> round(math.exp(ln_hazard_at(5, 16.07)), 6)
+    >>> round(float(np.exp(ln_hazard_at(5, 16.07))), 6)
     1.0
     """
     table = hazard_table()
