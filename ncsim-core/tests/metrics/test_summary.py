@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from jsonschema import Draft202012Validator
 from ncsim_core.engine.setup import Limits
 from ncsim_core.metrics import compute_metrics, metrics_schema
-from ncsim_core.testing.runs import run_cases
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.loading import load_run
 from ncsim_core.trace.recorder import RunRecorder

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ncsim_core.engine.setup import Limits
-from ncsim_core.testing.runs import run_cases
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.trace.check import check_trace, trace_report
 from ncsim_core.trace.writer import TraceWriter
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
-from ncsim_core.testing.runs import run_cases
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.loading import load_run
 from ncsim_core.trace.recorder import RunRecorder

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from jsonschema import Draft202012Validator
 from ncsim_core.contracts.interference_model import Competition
 from ncsim_core.engine.observer import RateCause, RateChange
-from ncsim_core.testing.runs import run_cases
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.records import RECORDS, TraceError, TraceHeader
 from ncsim_core.trace.schema import trace_schema

@@ -34,11 +34,21 @@ from ncsim_core.units import Instant
 
 BUFFER_CHARACTERS: Final = 64 * 1024
 LIVE_FLUSH_s: Final = 0.25
+MAX_FLOATS_KEPT: Final = 10_000
 
 to_json: Final[Callable[[object], str]] = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False
 ).encode
-_float_text: Final = float.__repr__  # what json writes, also for numpy's subclass of float
+
+
+class _FloatTexts(dict[float, str]):
+    """The text of each float as json writes it, kept because rates and factors recur."""
+
+    def __missing__(self, number: float) -> str:
+        text = float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
+        if len(self) < MAX_FLOATS_KEPT:
+            self[number] = text
+        return text
 
 
 class TraceWriter(Observer):
@@ -70,6 +80,7 @@ class TraceWriter(Observer):
         self._sink = TextSink(target, is_live=is_live)
         self._is_live = is_live
         self._flushed_at_s = time.monotonic()
+        self._float_text = _FloatTexts().__getitem__
         self._lines: list[str] = []
         self._characters = 0
         self._counts = dict.fromkeys(RECORDS, 0)
@@ -119,7 +130,7 @@ class TraceWriter(Observer):
         self, at_us: Instant, transfer: int, route: Sequence[LinkIndex], size_MB: float
     ) -> None:
         self._counts["xstart"] += 1
-        size = _float_text(float(size_MB))
+        size = self._float_text(size_MB)
         self._put(
             f'{{"t":{at_us},"k":"xstart","x":{transfer},"route":[{_joined(route)}],"size":{size}}}\n'
         )
@@ -136,9 +147,9 @@ class TraceWriter(Observer):
         self._counts["recalc"] += 1
         self._put(
             f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{_joined(transfers)}],'
-            f'"r":[{_floats_joined(rates)}],"l":[{_joined(bottlenecks)}],'
+            f'"r":[{",".join(map(self._float_text, rates))}],"l":[{_joined(bottlenecks)}],'
             f'"nc":[{_joined(contenders)}],"nh":[{_joined(hidden)}],'
-            f'"fh":[{_floats_joined(hidden_factors)}],"f":[{_joined(flows)}]}}\n'
+            f'"fh":[{",".join(map(self._float_text, hidden_factors))}],"f":[{_joined(flows)}]}}\n'
         )
 
     @override
@@ -186,10 +197,6 @@ class TraceWriter(Observer):
 
 def _joined(numbers: Iterable[int]) -> str:
     return ",".join(map(str, numbers))
-
-
-def _floats_joined(numbers: Iterable[float]) -> str:
-    return ",".join([_float_text(float(number)) for number in numbers])
 
 
 def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dict[str, object]:

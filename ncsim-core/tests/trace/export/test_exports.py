@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.testing.builders import chain, inject, line
-from ncsim_core.testing.runs import run_cases
 from ncsim_core.testing.toys import models
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.export.perfetto import perfetto_events, perfetto_text
 from ncsim_core.trace.export.published import published_events, published_text
