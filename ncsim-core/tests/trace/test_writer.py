@@ -11,7 +11,8 @@ from ncsim_core.contracts.interference_model import Competition
 from ncsim_core.engine.observer import RateCause, RateChange
 from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
-from ncsim_core.trace.records import RECORDS, TraceError, TraceHeader
+from ncsim_core.trace.fields import RECORDS
+from ncsim_core.trace.records import TraceError, TraceHeader
 from ncsim_core.trace.schema import trace_schema
 from ncsim_core.trace.writer import TraceWriter, to_json
 

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ncsim_core.engine.outcome import RunStatus
+from ncsim_core.trace.fields import RECORDS
 from ncsim_core.trace.loading import Introduced, expect_introduced
 from ncsim_core.trace.reader import TraceReader, read_trace
 from ncsim_core.trace.records import (
-    RECORDS,
     Done,
     Ended,
     Injected,

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import Final, TypeAlias, cast
 
 from ncsim_core.models import ComponentIdentity
+from ncsim_core.trace.fields import HEADER_FIELDS
 from ncsim_core.trace.records import (
     FORMAT,
-    HEADER_FIELDS,
     TIME_UNIT,
     VERSION,
     LinkRow,

@@ -13,16 +13,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Final, Self, cast
 
+from ncsim_core.trace.fields import RECORDS
 from ncsim_core.trace.files import trace_file
 from ncsim_core.trace.preamble import preamble_of
-from ncsim_core.trace.records import (
-    RECORDS,
-    Done,
-    RatesAssigned,
-    TraceError,
-    TracePreamble,
-    TraceRecord,
-)
+from ncsim_core.trace.records import Done, RatesAssigned, TraceError, TracePreamble, TraceRecord
 from ncsim_core.trace.shapes import is_count, shown
 
 MAX_LINE_BYTES: Final = 64 * 1024 * 1024

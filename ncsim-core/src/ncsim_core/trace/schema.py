@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable, Mapping
 
-from ncsim_core.trace.records import FORMAT, HEADER_FIELDS, RECORDS, TIME_UNIT, Field
+from ncsim_core.trace.fields import HEADER_FIELDS, RECORDS, Field
+from ncsim_core.trace.records import FORMAT, TIME_UNIT
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -3,10 +3,10 @@
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
+from ncsim_core.trace.fields import RECORDS
 from ncsim_core.trace.loading import rate_steps
 from ncsim_core.trace.reader import read_trace
 from ncsim_core.trace.records import (
-    RECORDS,
     Done,
     Ended,
     Injected,

@@ -19,16 +19,9 @@ from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.models import ComponentIdentity
 from ncsim_core.network import LinkIndex, NodeIndex
+from ncsim_core.trace.fields import RECORDS, kinds_documented
 from ncsim_core.trace.files import TextSink
-from ncsim_core.trace.records import (
-    FORMAT,
-    RECORDS,
-    TIME_UNIT,
-    VERSION,
-    TraceHeader,
-    TraceLevel,
-    kinds_documented,
-)
+from ncsim_core.trace.records import FORMAT, TIME_UNIT, VERSION, TraceHeader, TraceLevel
 from ncsim_core.trace.tables import injected_record, link_rows, node_rows
 from ncsim_core.units import Instant
 
