@@ -33,9 +33,7 @@ def main() -> None:
     for grid, tasks, routing in product((2, 3, 4), (5, 10, 20), ROUTINGS):
         best = {}
         for model in MODELS:
-            spans_s = {
-                each: makespan_s(grid, tasks, each, routing, model) for each in SCHEDULERS
-            }
+            spans_s = {each: makespan_s(grid, tasks, each, routing, model) for each in SCHEDULERS}
             best[model] = min(spans_s, key=spans_s.__getitem__)
             shown = " ".join(f"{name} {span_s:.3f}" for name, span_s in spans_s.items())
             sys.stdout.write(f"{grid}x{grid} {tasks:2d} {routing:12s} {model:12s} {shown}\n")
