@@ -27,6 +27,9 @@ class Forgetful(RoundRobinScheduler):
 """
 
 
+FAILURES_OF_FORGETFUL = ("plan_is_total", "extremes_are_planned", "runs_obey_the_rules")
+
+
 def run(*arguments: str) -> Result:
     return CliRunner().invoke(app, list(arguments))
 
@@ -109,12 +112,19 @@ def test_show_of_an_unknown_name_or_kind_says_what_there_is():
     assert isinstance(run("show", "planner", "manual").exception, ScenarioError)
 
 
-def test_check_of_core_passes_and_counts():
-    result = run("check", "ncsim-core")
+def test_check_of_a_good_plugin_passes_and_counts(fake_dist):
+    component = '"queue_model", "mine", "ncsim_core.builtin.queue_models:FifoQueue", "Fifo."'
+    fake_dist("mine-dist", {"mine_declaration": declaring(component)})
+
+    result = run("check", "mine-dist")
 
     assert result.exit_code == 0, result.output
-    assert "routing_model ncsim-core/direct: 13 run, 1 skipped" in result.output
-    assert "in all: " in result.output
+    assert result.output.splitlines() == [
+        "mine-dist 1.0: 4 run, 0 skipped, 0 expected failures, 0 failed",
+        "queue_model mine-dist/mine: 13 run, 1 skipped, 0 expected failures, 0 failed",
+        "    skipped: declared_order_is_kept: does not declare order",
+        "in all: 17 run, 1 skipped, 0 expected failures, 0 failed",
+    ]
 
 
 def test_check_fails_on_a_component_that_breaks_its_contract(fake_dist):
@@ -127,7 +137,7 @@ def test_check_fails_on_a_component_that_breaks_its_contract(fake_dist):
 
 
 def test_check_counts_declared_expected_failures(fake_dist):
-    reasons = {"plan_is_total": "by design", "extremes_are_planned": "by design"}
+    reasons = dict.fromkeys(FAILURES_OF_FORGETFUL, "by design")
     forgetful(fake_dist, f", expected_failures={reasons}")
 
     result = run("check", "forgetful-dist", "--json")
@@ -140,11 +150,7 @@ def test_check_counts_declared_expected_failures(fake_dist):
 
 
 def test_check_fails_on_an_expected_failure_that_passes(fake_dist):
-    reasons = {
-        "plan_is_total": "by design",
-        "extremes_are_planned": "by design",
-        "planned_nodes_exist": "wrong",
-    }
+    reasons = dict.fromkeys([*FAILURES_OF_FORGETFUL, "planned_nodes_exist"], "by design")
     forgetful(fake_dist, f", expected_failures={reasons}")
 
     result = run("check", "forgetful-dist")

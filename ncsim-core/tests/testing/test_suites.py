@@ -18,12 +18,12 @@ __all__ = ["fake_dist"]
 PLANTED = Path(__file__).parent / "planted"
 
 NUMBER_OF_CHECKS = {
-    "scheduler": 12,
-    "routing_model": 14,
-    "link_model": 11,
-    "interference_model": 18,
-    "queue_model": 12,
-    "dag_source": 11,
+    "scheduler": 14,
+    "routing_model": 16,
+    "link_model": 13,
+    "interference_model": 21,
+    "queue_model": 14,
+    "dag_source": 13,
 }
 
 ALL_CHECKS = [(kind, one.name) for kind, suite in SUITES.items() for one in suite.checks()]

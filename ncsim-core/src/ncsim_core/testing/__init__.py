@@ -15,8 +15,9 @@ import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ncsim_core.testing.checking import CheckResult, check_component
+    from ncsim_core.testing.checking import check_component
     from ncsim_core.testing.oracle import GlobalRefresh
+    from ncsim_core.testing.results import CheckResult
     from ncsim_core.testing.suites import (
         ComponentSuite,
         DAGSourceSuite,
@@ -43,7 +44,7 @@ __all__ = [
 ]
 
 _HOME = {
-    "CheckResult": "ncsim_core.testing.checking",
+    "CheckResult": "ncsim_core.testing.results",
     "GlobalRefresh": "ncsim_core.testing.oracle",
     "check_component": "ncsim_core.testing.checking",
 }

@@ -7,82 +7,31 @@ hypothesis, always the same ones on every machine, so that a green run stays gre
 import inspect
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Protocol, TypeVar, cast
 
 from hypothesis import HealthCheck, Phase, given, reject, settings
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
-from ncsim_core.errors import ModelScopeError, ScenarioError
+from ncsim_core.errors import ModelScopeError, PlacementError, ScenarioError
 from ncsim_core.testing.questions import Case
+from ncsim_core.testing.results import Check, CheckResult, CheckStatus
 from ncsim_core.testing.subject import Subject
 
 if TYPE_CHECKING:
     from ncsim_core.registry import Registry
     from ncsim_core.testing.suites.base import ComponentSuite
 
-CheckStatus: TypeAlias = Literal[
-    "passed", "failed", "skipped", "expected_failure", "unexpected_pass"
-]
-
 CheckBody = TypeVar("CheckBody", bound=Callable[..., None])
 
 PREFIX = "check_"
 
+REFUSALS = (ScenarioError, ModelScopeError, PlacementError)
+"""How a component says that an input is not for it, which is no fault of either."""
+
 ENOUGH_s = 5.0
 """Time after which a check that has not failed draws no further examples."""
-
-
-@dataclass(frozen=True)
-class Check:
-    """One property of a contract.
-
-    Args:
-        name: What it claims, in words joined by ``_``.
-        body: The suite's method.
-        capability: Run only for components that declare it.
-        is_drawn: Whether options and cases are drawn; otherwise it runs once.
-        drawn: Names of the parameters to be drawn.
-    """
-
-    name: str
-    body: Callable[..., None]
-    capability: str | None
-    is_drawn: bool
-    drawn: tuple[str, ...]
-
-    @property
-    def claim(self) -> str:
-        """Return the first line of its docstring."""
-        return (inspect.getdoc(self.body) or self.name).splitlines()[0]
-
-
-@dataclass(frozen=True)
-class CheckResult:
-    """What came of one check of one component.
-
-    Args:
-        component: Qualified name; a distribution for checks of a whole plug-in.
-        check: Name of the check.
-        status: How it ended.
-        detail: Why it failed or was skipped.
-        duration_s: Time it took.
-        error: What was raised, for those who want the traceback.
-    """
-
-    component: str
-    check: str
-    status: CheckStatus
-    detail: str = ""
-    duration_s: float = 0.0
-    error: BaseException | None = None
-
-    @property
-    def is_bad(self) -> bool:
-        """Return whether it should keep a plug-in from being published."""
-        return self.status in ("failed", "unexpected_pass")
 
 
 class ComponentChecks(Protocol):
@@ -169,22 +118,23 @@ def run(suite: ComponentChecks, one: Check, subject: Subject) -> str:
         sections: Mapping[str, Mapping[str, object]],
         values: Mapping[str, object],
     ) -> None:
-        if patience.is_over():
+        if patience.is_over:
             return
         chosen = Subject(subject.registry, subject.registered, options, sections)
         try:
             one.body(suite, chosen, **{name: _settled(chosen, v) for name, v in values.items()})
-        except (ScenarioError, ModelScopeError):
+        except REFUSALS:
             reject()  # a component may say that an input is not for it
         except BaseException:
             patience.has_failed = True
             raise
+        patience.examples += 1
 
     test = given(
         options=suite.option_values(subject), sections=suite.section_values(subject), values=drawn
     )(on_example)
     steady_settings(suite.examples)(test)()
-    return f"stopped after {patience.examples} examples, it is slow" if patience.is_over() else ""
+    return f"stopped after {patience.examples} examples, it is slow" if patience.is_over else ""
 
 
 class _Patience:
@@ -195,12 +145,11 @@ class _Patience:
         self.examples = 0
         self._until_s = time.perf_counter() + ENOUGH_s
 
+    @property
     def is_over(self) -> bool:
-        """Return whether time is up, and count one more example if it is not."""
-        if self.examples and not self.has_failed and time.perf_counter() > self._until_s:
-            return True
-        self.examples += 1
-        return False
+        """Return whether time is up and at least one example has counted."""
+        is_late = time.perf_counter() > self._until_s
+        return is_late and self.examples > 0 and not self.has_failed
 
 
 def check_component(

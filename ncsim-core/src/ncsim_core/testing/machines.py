@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
-from ncsim_core.testing.strategies import COSTS, waiting_task
+from ncsim_core.testing.drawing import COSTS
+from ncsim_core.testing.strategies import waiting_task
 
 ORDER_KEYS: dict[str, Callable[[WaitingTask], tuple[float, ...]]] = {
     "fifo": lambda task: (task.ticket,),

@@ -1,152 +1,96 @@
-"""Hypothesis strategy for whole runs: networks, traffic and interference with every hard case.
+"""Whole runs with one component under test and the plainest ones beside it."""
 
-Small times and sizes, so that ties on the same microsecond, zero rates, resumed and blocked
-transfers, latencies, zero costs and zero sizes all come up.
-"""
+import io
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, NamedTuple, cast
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from hypothesis import strategies as st
-from hypothesis.strategies import DrawFn, SearchStrategy
-from typing_extensions import override
-
-from ncsim_core.contracts.interference_model import Competition, InterferenceModel
-from ncsim_core.engine.observer import Observer
-from ncsim_core.engine.setup import Limits
+from ncsim_core.contracts.link_model import LinkModel
+from ncsim_core.engine.outcome import Outcome
+from ncsim_core.engine.setup import Reach
 from ncsim_core.engine.simulation import Simulation
-from ncsim_core.network import Link, LinkId, LinkIndex, LinkRates, Network, Node, NodeId
-from ncsim_core.testing.toys import models
-from ncsim_core.workflow import DAG, DagId, Dependency, Injection, Task, TaskId
+from ncsim_core.models import Models
+from ncsim_core.network import Network
+from ncsim_core.testing import toys
+from ncsim_core.testing.questions import Case
+from ncsim_core.testing.subject import Subject
+from ncsim_core.trace.check import check_trace
+from ncsim_core.trace.records import TraceLevel
+from ncsim_core.trace.writer import TraceWriter
+from ncsim_core.units import us_from_s
+from ncsim_core.workflow import DAG, TaskId
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-CAPACITIES = (50.0, 100.0, 300.0)
-BANDWIDTHS_MBps = (0.5, 1.0, 2.0, 3.0, 7.7)
-LATENCIES_s = (0.0, 0.0, 0.1)
-COSTS = (0.0, 50.0, 100.0, 170.0)
-TIMES_us = (0, 500_000, 1_000_003)
-
-
-class ToyRadio(InterferenceModel):
-    """Contention divides by the active neighbours; each hidden interferer takes a quarter.
-
-    Args:
-        neighbours: By link, the links it shares the channel with.
-        hidden: By link, the links that disturb its receiver unheard.
-        stop_at: Number of active neighbours from which the factor is 0.
-    """
-
-    def __init__(
-        self,
-        neighbours: Mapping[LinkIndex, Collection[LinkIndex]],
-        hidden: Mapping[LinkIndex, Collection[LinkIndex]],
-        stop_at: int = 99,
-    ) -> None:
-        self._neighbours = neighbours
-        self._hidden = hidden
-        self._stop_at = stop_at
-
-    @override
-    def factors(
-        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
-    ) -> "NDArray[np.float64]":
-        import numpy as np
-
-        against = self.competition(links, active)
-        return np.array([self._contention(each) * each.hidden_factor for each in against])
-
-    def _contention(self, against: Competition) -> float:
-        return 0.0 if against.contenders >= self._stop_at else 1.0 / (1 + against.contenders)
-
-    @override
-    def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
-        tables = (self._neighbours, self._hidden)
-        near = {link for table in tables for link in table if set(table[link]) & set(changed)}
-        return near | set(changed)
-
-    @override
-    def competition(
-        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
-    ) -> Sequence[Competition]:
-        return [self._against(link, set(active) - {link}) for link in links]
-
-    def _against(self, link: LinkIndex, others: set[LinkIndex]) -> Competition:
-        contenders = others.intersection(self._neighbours.get(link, ()))
-        hidden = others.intersection(self._hidden.get(link, ())) - contenders
-        return Competition(len(contenders), len(hidden), 0.75 ** len(hidden))
+FIELD_BY_KIND: Final = {
+    "scheduler": "scheduler",
+    "routing_model": "routing",
+    "link_model": "link_model",
+    "interference_model": "interference",
+    "queue_model": "new_queue",
+    "dag_source": "dag_source",
+}
 
 
-@dataclass(frozen=True)
-class RunCase:
-    """Everything that a run is made of.
+class Traced(NamedTuple):
+    """A run that has ended, and its trace."""
 
-    Args:
-        network: Nodes and links, rates decided.
-        injections: What enters when.
-        interference: How links slow each other down.
-    """
-
-    network: Network
-    injections: tuple[Injection, ...]
-    interference: InterferenceModel
-
-    def simulation(self, *observers: Observer, limits: Limits | None = None) -> Simulation:
-        """Return a simulation of it that has not begun."""
-        chosen = models(self.network, self.injections, interference=self.interference)
-        return Simulation(self.network, chosen, limits, observers)
+    outcome: Outcome
+    trace: str
 
 
-@st.composite
-def run_cases(draw: DrawFn, *, max_nodes: int = 6, max_tasks: int = 9) -> RunCase:
-    """Return runs on strongly connected networks; most complete, some end blocked."""
-    network = draw(_connected_networks(max_nodes))
-    later_us = draw(st.lists(st.sampled_from(TIMES_us), max_size=2))
-    injections = tuple(
-        Injection(at_us, draw(_pinned_dags(f"d{number}", len(network.nodes), max_tasks)))
-        for number, at_us in enumerate(sorted([0, *later_us]))
+def run_with(
+    subject: Subject, case: Case, reach: Reach = Reach.LOCAL, level: TraceLevel = "full"
+) -> Traced:
+    """Return a run of the case's injections with the component built anew."""
+    network, models = _who_decides(subject, case)
+    trace = io.StringIO()
+    simulation = Simulation(
+        network, models, observers=[TraceWriter(trace, level=level)], reach=reach
     )
-    return RunCase(network, injections, draw(_radios(len(network.links))))
+    return Traced(simulation.run(), trace.getvalue())
 
 
-@st.composite
-def _connected_networks(draw: DrawFn, max_nodes: int) -> Network:
-    count = draw(st.integers(2, max_nodes))
-    nodes = tuple(Node(NodeId(f"n{k}"), draw(st.sampled_from(CAPACITIES))) for k in range(count))
-    ring = [(k, (k + 1) % count) for k in range(count)]
-    pairs = [(a, b) for a in range(count) for b in range(count) if a != b]
-    chords = draw(st.lists(st.sampled_from(pairs), max_size=10))
-    ends = list(dict.fromkeys([*ring, *chords]))
-    links = tuple(
-        Link(LinkId(f"l{k}"), NodeId(f"n{a}"), NodeId(f"n{b}")) for k, (a, b) in enumerate(ends)
-    )
-    bandwidths = [draw(st.sampled_from(BANDWIDTHS_MBps)) for _ in links]
-    latencies = [draw(st.sampled_from(LATENCIES_s)) for _ in links]
-    return Network(nodes, links, LinkRates.of(bandwidths, latencies))
+def _who_decides(subject: Subject, case: Case) -> tuple[Network, Models]:
+    component: object = subject.build(case)
+    network = case.network
+    if subject.component.kind == "link_model":
+        network = network.with_rates(cast("LinkModel", component).rate_links(network))
+    if subject.component.kind == "queue_model":
+        component = lambda: subject.build(case)  # noqa: E731 - one queue per node
+    kind = subject.component.kind
+    chosen: dict[str, Any] = {
+        FIELD_BY_KIND[kind]: component,
+        "identities": {kind: subject.identity},
+    }
+    return network, replace(toys.models(network, case.injections), **chosen)
 
 
-@st.composite
-def _pinned_dags(draw: DrawFn, dag_id: str, node_count: int, max_tasks: int) -> DAG:
-    count = draw(st.integers(1, max_tasks))
-    on = st.integers(0, node_count - 1)
-    tasks = tuple(
-        Task(TaskId(f"T{k}"), draw(st.sampled_from(COSTS)), NodeId(f"n{draw(on)}"))
-        for k in range(count)
-    )
-    pairs = [(a, b) for b in range(count) for a in range(b)]
-    edges = draw(st.lists(st.sampled_from(pairs), max_size=14, unique=True)) if pairs else []
-    sizes_MB = st.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0, 10.0]) | st.floats(0.001, 20.0)
-    return DAG(
-        DagId(dag_id),
-        tasks,
-        tuple(Dependency(TaskId(f"T{a}"), TaskId(f"T{b}"), draw(sizes_MB)) for a, b in edges),
-    )
+def trace_faults(trace: str) -> list[str]:
+    """Return what in a trace cannot be."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "trace.jsonl"
+        path.write_text(trace, "utf-8")
+        return [f"line {each.line}: {each.message}" for each in check_trace(path)]
 
 
-def _radios(link_count: int) -> SearchStrategy[ToyRadio]:
-    indices = st.integers(0, link_count - 1)
-    near = st.dictionaries(indices, st.lists(indices, max_size=6), max_size=link_count)
-    return st.builds(ToyRadio, near, near, st.sampled_from([1, 2, 3, 99]))
+def least_makespan_us(case: Case) -> int:
+    """Return a bound no run can beat: critical paths on the fastest node, transfers free."""
+    fastest = max(node.compute_capacity for node in case.network.nodes)
+    ends = [each.at_us + _critical_path_us(each.dag, fastest) for each in case.injections]
+    return max(ends, default=0)
+
+
+def _critical_path_us(dag: DAG, capacity: float) -> int:
+    """Return the longest chain of rounded durations at one capacity."""
+    left = {task.id: len(dag.incoming[task.id]) for task in dag.tasks}
+    duration_us = {task.id: us_from_s(task.compute_cost / capacity) for task in dag.tasks}
+    end_us: dict[TaskId, int] = dict(duration_us)
+    free = [task_id for task_id, count in left.items() if count == 0]
+    for task_id in free:
+        for dependency in dag.outgoing[task_id]:
+            target = dependency.target
+            end_us[target] = max(end_us[target], end_us[task_id] + duration_us[target])
+            left[target] -= 1
+            if left[target] == 0:
+                free.append(target)
+    return max(end_us.values(), default=0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from ncsim_core.contracts.link_model import LinkModel
+from ncsim_core.models import ComponentIdentity
 from ncsim_core.network import Network
 from ncsim_core.plugins import Component
 from ncsim_core.registry import RegisteredComponent, Registry
@@ -33,6 +34,14 @@ class Subject:
     def component(self) -> Component:
         """Return the declaration."""
         return self.registered.component
+
+    @property
+    def identity(self) -> ComponentIdentity:
+        """Return how errors name the component."""
+        who = self.registered
+        return ComponentIdentity(
+            self.component.kind, who.qualified_name, who.distribution, who.version
+        )
 
     def capability(self, name: str) -> str | None:
         """Return what follows ``name=`` among its capabilities, empty for a bare ``name``."""

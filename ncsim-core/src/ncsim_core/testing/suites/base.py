@@ -1,9 +1,8 @@
 """What holds for components of every kind, and how a subclass becomes tests."""
 
-import inspect
 import pickle
 import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import ClassVar, cast
 
 import pytest
@@ -11,19 +10,19 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 from typing_extensions import override
 
-from ncsim_core.errors import ScenarioError
 from ncsim_core.registry import Registry, get_registry
-from ncsim_core.registry.building import load_object
-from ncsim_core.registry.option_schemas import properties_of, schema_fault
-from ncsim_core.testing.builders import line, make_context
-from ncsim_core.testing.checking import PREFIX, Check, CheckResult, check, result_of
+from ncsim_core.testing.checking import PREFIX, REFUSALS, check, result_of
 from ncsim_core.testing.child import answers_in_new_process
 from ncsim_core.testing.option_strategies import options_for
 from ncsim_core.testing.questions import Answer, Case, fixed_cases
+from ncsim_core.testing.results import Check, CheckResult
+from ncsim_core.testing.strategies import runs
 from ncsim_core.testing.subject import Subject, default_sections
+from ncsim_core.testing.suites.declaration import DeclarationChecks
+from ncsim_core.testing.suites.runs import RunChecks
 
 
-class ComponentSuite:
+class ComponentSuite(RunChecks, DeclarationChecks):
     """Checks of one component; subclass the suite of its kind and name the component.
 
     Each ``check_<name>`` becomes ``test_<name>`` of every subclass that has a ``component``. A
@@ -112,48 +111,7 @@ class ComponentSuite:
 
     def strategies(self) -> Mapping[str, SearchStrategy[object]]:
         """Return what each parameter of a check may be."""
-        return {"case": self.cases(), "other": self.cases()}
-
-    @check(is_drawn=False)
-    def check_schema_is_portable(self, subject: Subject) -> None:
-        """The options schema is valid draft-07 in the portable subset, all of it described."""
-        from jsonschema import Draft7Validator
-
-        schema = subject.registered.schema
-        fault = schema_fault(schema)
-        assert fault is None, fault
-        Draft7Validator.check_schema(schema)
-        bare = _undescribed(schema)
-        assert not bare, f"options without a description: {bare}"
-
-    @check(is_drawn=False)
-    def check_defaults_are_the_factorys(self, subject: Subject) -> None:
-        """Every option that may be left out has a valid default, equal to the factory's."""
-        from jsonschema import Draft7Validator
-
-        schema = subject.registered.schema
-        parameters = inspect.signature(_factory(subject)).parameters
-        for name, child in properties_of(schema).items():
-            if name in cast("Sequence[str]", schema.get("required", ())):
-                continue
-            assert "default" in child, f"option {name!r} may be left out and has no default"
-            Draft7Validator(child).validate(child["default"])
-            parameter = parameters.get(name)
-            if parameter is not None and parameter.default is not inspect.Parameter.empty:
-                assert parameter.default == child["default"], (
-                    f"option {name!r}: the schema says {child['default']!r}, "
-                    f"the factory {parameter.default!r}"
-                )
-
-    @check(is_drawn=False)
-    def check_factory_takes_every_option(self, subject: Subject) -> None:
-        """The factory accepts the context, its params and every option by name."""
-        options = dict.fromkeys(properties_of(subject.registered.schema))
-        params = subject.component.params
-        both = sorted(options.keys() & params.keys())
-        assert not both, f"options that are params as well: {both}"
-        context = make_context(line(2))
-        inspect.signature(_factory(subject)).bind(context, **params, **options)
+        return {"case": self.cases(), "other": self.cases(), "run": runs()}
 
     @check()
     def check_same_question_same_answer(self, subject: Subject, case: Case, other: Case) -> None:
@@ -230,27 +188,12 @@ def _test_of(one: Check) -> Callable[[ComponentSuite], None]:
     return test
 
 
-def _factory(subject: Subject) -> Callable[..., object]:
-    return cast("Callable[..., object]", load_object(subject.component.factory))
-
-
 def _is_refused(suite: ComponentSuite, subject: Subject, case: Case) -> bool:
     try:
         suite.fresh_answer(subject, case)
-    except ScenarioError:
+    except REFUSALS:
         return True
     return False
-
-
-def _undescribed(schema: Mapping[str, object], where: str = "") -> list[str]:
-    """Return the properties without a description, those of objects inside included."""
-    bare: list[str] = []
-    for name, child in properties_of(schema).items():
-        here = f"{where}{name}"
-        if not child.get("description"):
-            bare.append(here)
-        bare += _undescribed(child, f"{here}.")
-    return bare
 
 
 def _plain(case: Case) -> object:

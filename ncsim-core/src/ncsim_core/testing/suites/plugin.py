@@ -11,8 +11,9 @@ from ncsim_core.plugins import KINDS, PLUGIN_GROUP
 from ncsim_core.registry import RegisteredComponent, Registry, get_registry
 from ncsim_core.registry.building import factory_fault
 from ncsim_core.registry.records import normalised
-from ncsim_core.testing.checking import CheckResult, described
+from ncsim_core.testing.checking import described
 from ncsim_core.testing.child import run_python
+from ncsim_core.testing.results import CheckResult
 
 HEAVY = ("numpy", "networkx", "scipy", "pandas", "saga", "torch", "jsonschema", "hypothesis")
 """What importing a declaration module must not import."""

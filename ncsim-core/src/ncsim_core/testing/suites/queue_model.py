@@ -1,5 +1,6 @@
 """Properties of queue models."""
 
+from collections.abc import Mapping
 from typing import cast
 
 import pytest
@@ -25,6 +26,11 @@ class QueueModelSuite(ComponentSuite):
     @override
     def cases(self) -> SearchStrategy[Case]:
         return strategies.waiting_lines()
+
+    @override
+    def strategies(self) -> Mapping[str, SearchStrategy[object]]:
+        crowded = strategies.runs(max_nodes=2, max_tasks=8)
+        return {**super().strategies(), "run": crowded}
 
     @check(is_drawn=False)
     def check_nothing_is_lost_or_invented(self, subject: Subject) -> None:

@@ -1,5 +1,6 @@
 """Properties of schedulers."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import ClassVar, cast
@@ -37,6 +38,11 @@ class SchedulerSuite(ComponentSuite):
     def cases(self) -> SearchStrategy[Case]:
         limit = self._most_tasks(self.subject())
         return strategies.instances(max_nodes=self.max_nodes, max_tasks=limit)
+
+    @override
+    def strategies(self) -> Mapping[str, SearchStrategy[object]]:
+        limit = min(4, self._most_tasks(self.subject()))
+        return {**super().strategies(), "run": strategies.runs(max_tasks=limit)}
 
     @override
     def ordinary_cases(self, subject: Subject) -> list[Case]:

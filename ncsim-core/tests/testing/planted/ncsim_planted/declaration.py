@@ -17,6 +17,8 @@ OPTIONS_OF_FLAW = {
     "arguments_stay_unchanged": {},
     "pickled_copy_gives_same_answer": {},
     "hash_seed_changes_nothing": {},
+    "runs_obey_the_rules": {},
+    "equal_runs_leave_equal_traces": {},
 }
 
 CLASSES = {
@@ -47,6 +49,7 @@ CLASSES = {
         "reach_holds_what_changed": (),
         "out_of_reach_nothing_changes": (),
         "session_equals_global_refresh": (),
+        "local_refresh_equals_global": (),
         "sessions_do_not_meet": (),
         "competition_can_be_explained": (),
         "one_more_link_never_helps": ("monotone",),
@@ -56,6 +59,7 @@ CLASSES = {
         "declared_order_is_kept": ("order=fifo",),
         "pop_of_nothing_is_an_index_error": (),
         "queues_do_not_meet": (),
+        "equal_runs_leave_equal_traces": (),
     },
     "dag_source": {
         "injections_end": (),
@@ -69,7 +73,8 @@ CLASSES = {
 def ncsim_components() -> Iterable[Component]:
     """Return all planted components."""
     for kind in KINDS:
-        yield from (_with_flaw(kind, flaw) for flaw in OPTIONS_OF_FLAW)
+        flaws = [flaw for flaw in OPTIONS_OF_FLAW if flaw not in CLASSES[kind]]
+        yield from (_with_flaw(kind, flaw) for flaw in flaws)
         for name, capabilities in CLASSES[kind].items():
             yield Component(
                 kind=kind,

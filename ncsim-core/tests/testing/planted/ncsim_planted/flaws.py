@@ -70,6 +70,10 @@ def asks_hash(context, kind, ask, arguments):
     return altered(HASH_DECIDED, kind, ask, arguments)
 
 
+def breaks_down(context, kind, ask, arguments):
+    raise RuntimeError("out of order")
+
+
 def is_plain(context, kind, ask, arguments):
     return ask(*arguments)
 
@@ -80,6 +84,8 @@ FLAWS = {
     "arguments_stay_unchanged": changes_arguments,
     "pickled_copy_gives_same_answer": is_plain,
     "hash_seed_changes_nothing": asks_hash,
+    "runs_obey_the_rules": breaks_down,
+    "equal_runs_leave_equal_traces": remembers,
 }
 
 

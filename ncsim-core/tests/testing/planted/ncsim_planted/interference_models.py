@@ -71,6 +71,10 @@ class SessionEqualsGlobalRefresh(TakeTurns):
         return Forgetful(self)
 
 
+class LocalRefreshEqualsGlobal(OutOfReachNothingChanges):
+    """Names too few links in reach."""
+
+
 class SessionsDoNotMeet(TakeTurns):
     def __init__(self, context):
         super().__init__(context)

@@ -31,3 +31,12 @@ class QueuesDoNotMeet(FifoQueue):
     def __init__(self, context):
         super().__init__(context)
         self._waiting = self.everyones
+
+
+class EqualRunsLeaveEqualTraces(FifoQueue):
+    popped = 0
+
+    def pop(self):
+        EqualRunsLeaveEqualTraces.popped += 1
+        waiting = self._waiting
+        return waiting.pop() if self.popped % 3 else waiting.popleft()
