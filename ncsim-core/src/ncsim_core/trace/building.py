@@ -94,14 +94,14 @@ class RunBuilder:
         self.node_of_task[first : first + entry.task_count] = nodes
 
     def add_step(self, transfer: int, step: RateStep) -> None:
-        """Enter a transfer's new rate, and credit what it was served at the old one."""
+        """Enter a transfer's new rate and what explains it."""
         if self._keeps_steps:
             self._steps.setdefault(transfer, []).append(step)
-        self._service[transfer] = (
-            self._credited_MB(transfer, step.at_us),
-            step.rate_MBps,
-            step.at_us,
-        )
+        self.set_rate(transfer, step.at_us, step.rate_MBps)
+
+    def set_rate(self, transfer: int, at_us: int, rate_MBps: float) -> None:
+        """Enter a transfer's new rate, and credit what it was served at the old one."""
+        self._service[transfer] = (self._credited_MB(transfer, at_us), rate_MBps, at_us)
 
     def end_transfer(self, transfer: int, at_us: int) -> None:
         """Enter that a transfer has been served."""

@@ -103,6 +103,11 @@ class RunRecorder(Observer):
     def rates_assigned(
         self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
     ) -> None:
+        builder = self._begun
+        if not self._keeps_steps:
+            for change in changes:
+                builder.set_rate(change.transfer, at_us, change.rate_MBps)
+            return
         by = "s" if cause.change == "start" else "e"
         for change in changes:
             step = RateStep(
@@ -114,7 +119,7 @@ class RunRecorder(Observer):
                 by,
                 cause.transfer,
             )
-            self._begun.add_step(change.transfer, step)
+            builder.add_step(change.transfer, step)
 
     @override
     def run_ended(self, outcome: Outcome) -> None:
