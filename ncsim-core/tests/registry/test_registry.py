@@ -11,6 +11,7 @@ from ncsim_core.plugins import KINDS, Component, RunInfo
 from ncsim_core.registry import PluginRecord, get_registry, load_registry
 from ncsim_core.registry.building import contract_of, factory_fault
 from ncsim_core.registry.messages import unknown_name
+from ncsim_core.registry.well_known import PROVIDER_BY_NAME
 from ncsim_core.testing.builders import line, make_context
 from ncsim_core.testing.fixtures import DECLARATION, FakeDist
 
@@ -324,3 +325,27 @@ def test_loading_imports_none_of_the_big_libraries():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
 
     assert done.stdout.strip() == "set()"
+
+
+FIRST_PARTY = {"NCSIM_PLUGINS": "ncsim-wifi,ncsim-saga,ncsim-routing"}
+
+
+def test_table_of_well_known_names_is_what_the_installed_packages_bring():
+    registry = load_registry(FIRST_PARTY)
+    packages = {each.distribution for each in registry.plugins if each.status == "ok"}
+    brought = {
+        (each.component.kind, each.component.name): each.distribution
+        for kind in KINDS
+        for each in registry.components(kind)
+        if each.distribution != "ncsim-core"
+    }
+    brought |= {("section", each.section.name): each.distribution for each in registry.sections()}
+
+    table = {
+        (kind, name): package
+        for kind, names in PROVIDER_BY_NAME.items()
+        for name, package in names.items()
+        if package in packages
+    }
+
+    assert table == brought

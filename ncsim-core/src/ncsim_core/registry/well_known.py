@@ -9,8 +9,8 @@ from typing import Final
 PROVIDER_BY_NAME: Final[Mapping[str, Mapping[str, str]]] = {
     "scheduler": dict.fromkeys(
         (
-            *("all_on_fastest", "bil", "brute_force", "cpop", "dps", "duplex", "etf"),
-            *("fastest_node", "fcp", "flb", "gdl", "hbmct", "heft", "hybrid", "maxmin", "mct"),
+            *("bil", "brute_force", "cpop", "dps", "duplex", "etf"),
+            *("fastest_node", "fcp", "flb", "gdl", "hbmct", "heft", "maxmin", "mct"),
             *("met", "minmin", "msbc", "mst", "olb", "peft", "smt", "sufferage", "wba"),
         ),
         "ncsim-saga",
@@ -20,7 +20,9 @@ PROVIDER_BY_NAME: Final[Mapping[str, Mapping[str, str]]] = {
         ("widest_path", "minimum_hop", "shortest_path"), "ncsim-routing"
     ),
     "link_model": {"wifi": "ncsim-wifi"},
-    "interference_model": dict.fromkeys(("csma_bianchi", "csma_clique", "proximity"), "ncsim-wifi"),
+    "interference_model": dict.fromkeys(
+        ("csma_bianchi", "csma_clique", "csma_spatial", "proximity"), "ncsim-wifi"
+    ),
     "section": {"rf": "ncsim-wifi"},
 }
 """Distribution of each well-known component, by kind and name; sections under ``section``."""
