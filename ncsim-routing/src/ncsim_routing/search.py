@@ -39,13 +39,14 @@ def breadth_first(network: Network, source: NodeIndex, target: NodeIndex | None 
         source: Where routes begin.
         target: Stop when this node is reached; ``None`` reaches all there are.
     """
+    outgoing, targets, bandwidth_MBps = network.outgoing, network.targets, network.bandwidth_MBps
     arrivals: Arrivals = [None] * len(network.nodes)
     reached = {source}
     waiting = deque([source])
     while waiting and target not in reached:
-        for link in network.outgoing[waiting.popleft()]:
-            end = network.targets[link]
-            if end not in reached and network.bandwidth_MBps[link] > 0:
+        for link in outgoing[waiting.popleft()]:
+            end = targets[link]
+            if end not in reached and bandwidth_MBps[link] > 0:
                 reached.add(end)
                 arrivals[end] = link
                 waiting.append(end)
@@ -71,23 +72,25 @@ def best_first(
         extend: Cost of a route with one link more.
         target: Stop when this node is settled; ``None`` settles all there are.
     """
-    arrivals: Arrivals = [None] * len(network.nodes)
+    outgoing, targets, bandwidth_MBps = network.outgoing, network.targets, network.bandwidth_MBps
+    nodes = network.nodes
+    arrivals: Arrivals = [None] * len(nodes)
     best_cost = {source: start_cost}
     settled: set[NodeIndex] = set()
-    waiting = [(start_cost, network.nodes[source].id, source)]
+    waiting = [(start_cost, nodes[source].id, source)]
     while waiting and target not in settled:
         cost, _, at = heappop(waiting)
         if at in settled:
             continue
         settled.add(at)
-        for link in network.outgoing[at]:
-            end = network.targets[link]
+        for link in outgoing[at]:
+            end = targets[link]
             end_cost = extend(cost, link)
             is_better = end not in best_cost or end_cost < best_cost[end]
-            if is_better and network.bandwidth_MBps[link] > 0:
+            if is_better and bandwidth_MBps[link] > 0:
                 best_cost[end] = end_cost
                 arrivals[end] = link
-                heappush(waiting, (end_cost, network.nodes[end].id, end))
+                heappush(waiting, (end_cost, nodes[end].id, end))
     return arrivals
 
 
@@ -95,6 +98,7 @@ def route_to(
     target: NodeIndex, source: NodeIndex, arrivals: Arrivals, network: Network
 ) -> Route | None:
     """Return the route that a search from ``source`` found, ``None`` if it found none."""
+    sources = network.sources
     backwards: list[LinkIndex] = []
     at = target
     while at != source:
@@ -102,5 +106,6 @@ def route_to(
         if link is None:
             return None
         backwards.append(link)
-        at = network.sources[link]
-    return tuple(reversed(backwards))
+        at = sources[link]
+    backwards.reverse()
+    return tuple(backwards)

@@ -61,9 +61,14 @@ def _from_routes(snapshot: NetworkSnapshot) -> VirtualNetwork:
 def _speeds_from(
     source: int, targets: Sequence[int], snapshot: NetworkSnapshot
 ) -> tuple[float, ...]:
-    return tuple(
-        SAME_NODE_MBps
-        if source == target
-        else snapshot.bottleneck_MBps(source, target) or UNREACHABLE_MBps
-        for target in targets
-    )
+    bandwidth_MBps = snapshot.network.bandwidth_MBps
+    speeds_MBps = []
+    for target in targets:
+        route = snapshot.routes.route(source, target)
+        if route is None:
+            speeds_MBps.append(UNREACHABLE_MBps)
+        elif source == target:
+            speeds_MBps.append(SAME_NODE_MBps)
+        else:
+            speeds_MBps.append(min(map(bandwidth_MBps.__getitem__, route)))
+    return tuple(speeds_MBps)
