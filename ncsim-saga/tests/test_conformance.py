@@ -10,7 +10,7 @@ from ncsim_saga.catalogue import SCHEDULERS
 from ncsim_saga.schedulers.saga_scheduler import SagaScheduler
 
 
-class SagaSuite(SchedulerSuite):
+class Saga:
     """Draws fewer examples, and leaves hash seeds to ``test_hash_seeds``.
 
     That asks all schedulers in one process per seed; here each would wait for its own import of
@@ -49,39 +49,39 @@ class TestCpop(SchedulerSuite):
     component = "cpop"
 
 
-class TestBil(SagaSuite):
+class TestBil(Saga, SchedulerSuite):
     component = "bil"
 
 
-class TestDps(SagaSuite):
+class TestDps(Saga, SchedulerSuite):
     component = "dps"
 
 
-class TestDuplex(SagaSuite):
+class TestDuplex(Saga, SchedulerSuite):
     component = "duplex"
 
 
-class TestEtf(SagaSuite):
+class TestEtf(Saga, SchedulerSuite):
     component = "etf"
 
 
-class TestFastestNode(SagaSuite):
+class TestFastestNode(Saga, SchedulerSuite):
     component = "fastest_node"
 
 
-class TestFcp(SagaSuite):
+class TestFcp(Saga, SchedulerSuite):
     component = "fcp"
 
 
-class TestFlb(SagaSuite):
+class TestFlb(Saga, SchedulerSuite):
     component = "flb"
 
 
-class TestGdl(SagaSuite):
+class TestGdl(Saga, SchedulerSuite):
     component = "gdl"
 
 
-class TestHbmct(SagaSuite):
+class TestHbmct(Saga, SchedulerSuite):
     """On DAGs of which it loses no task; elsewhere it has to say so, see ``test_planning``."""
 
     component = "hbmct"
@@ -90,49 +90,49 @@ class TestHbmct(SagaSuite):
         return super().cases().filter(keeps_all_tasks)
 
 
-class TestMaxmin(SagaSuite):
+class TestMaxmin(Saga, SchedulerSuite):
     component = "maxmin"
 
 
-class TestMct(SagaSuite):
+class TestMct(Saga, SchedulerSuite):
     component = "mct"
 
 
-class TestMet(SagaSuite):
+class TestMet(Saga, SchedulerSuite):
     component = "met"
 
 
-class TestMinmin(SagaSuite):
+class TestMinmin(Saga, SchedulerSuite):
     component = "minmin"
 
 
-class TestMsbc(SagaSuite):
+class TestMsbc(Saga, SchedulerSuite):
     component = "msbc"
 
 
-class TestMst(SagaSuite):
+class TestMst(Saga, SchedulerSuite):
     component = "mst"
 
 
-class TestOlb(SagaSuite):
+class TestOlb(Saga, SchedulerSuite):
     component = "olb"
 
 
-class TestSufferage(SagaSuite):
+class TestSufferage(Saga, SchedulerSuite):
     component = "sufferage"
 
 
-class TestWba(SagaSuite):
+class TestWba(Saga, SchedulerSuite):
     component = "wba"
 
 
-class TestBruteForce(SagaSuite):
+class TestBruteForce(Saga, SchedulerSuite):
     component = "brute_force"
     max_nodes = 2
     max_tasks = 3
 
 
-class TestSmt(SagaSuite):
+class TestSmt(Saga, SchedulerSuite):
     component = "smt"
     expected_failures: ClassVar = {
         "extremes_are_planned": "SAGA's SMT finds no schedule at all when a DAG needs no time"
