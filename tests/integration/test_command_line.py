@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import pytest
 from ncsim_core.cli.main import main
+from ncsim_core.metrics import compute_metrics
+from ncsim_core.trace.loading import load_run
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.yaml"))
@@ -156,6 +158,17 @@ def test_mutually_hidden_transfers_block_each_other_under_the_full_model_only(tm
     assert full.returncode == 2
     assert ": blocked_wireless" in full.stdout
     assert "both: C -> D (1 MB left, stalled on link cd)" in full.stdout
+
+
+@pytest.mark.parametrize("level", ["full", "coarse"])
+def test_stored_metrics_are_those_of_the_trace_when_a_run_is_cut_short_too(level, tmp_path):
+    out = tmp_path / "out"
+    ncsim("run", TWO_HOP, "-o", out, "--max-time", "3", "--trace", level)
+
+    stored = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+
+    assert stored == json.loads(json.dumps(compute_metrics(load_run(out))))
+    assert stored["status"] == "limit_reached"
 
 
 @pytest.mark.parametrize("arguments", [["rnu"], ["run"], ["run", "--nonsense", "x"], []])

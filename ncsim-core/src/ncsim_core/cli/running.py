@@ -1,11 +1,10 @@
 """What ``ncsim run`` does once its options are read."""
 
-import getpass
 import platform
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -111,13 +110,16 @@ def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> R
         seed=scenario.config.seed,
         sections=scenario.config.sections,
     )
-    recorder = RunRecorder(header, "coarse")
+    # Metrics are those that the trace gives: without rates in it, none are counted either.
+    level = "full" if request.trace_level == "full" else "coarse"
+    recorder = RunRecorder(header, cast("TraceLevel", level), keeps_steps=False)
     watching: list[Observer] = [*observers, recorder]
-    if request.trace_level != "off":
-        name = "trace.jsonl.gz" if request.compress else "trace.jsonl"
-        level = cast("TraceLevel", request.trace_level)
-        watching.append(TraceWriter(folder / name, header, level))
-    result = _simulated(request, watching)
+    with ExitStack() as open_files:
+        if request.trace_level != "off":
+            name = "trace.jsonl.gz" if request.compress else "trace.jsonl"
+            writer = TraceWriter(folder / name, header, cast("TraceLevel", request.trace_level))
+            watching.append(open_files.enter_context(writer))
+        result = _simulated(request, watching)
     metrics = compute_metrics(recorder.run_trace())
     wall_s = time.perf_counter() - started_s
     (folder / SCENARIO_NAME).write_text(scenario.to_yaml(), encoding="utf-8")
@@ -135,7 +137,6 @@ def _circumstances(wall_s: float, result: RunResult) -> dict[str, object]:
         "wall_s": round(wall_s, 6),
         "finished": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
         "host": platform.node(),
-        "user": getpass.getuser(),
         "platform": platform.platform(),
         "python": platform.python_version(),
     }
