@@ -163,7 +163,7 @@ def test_mutually_hidden_transfers_block_each_other_under_the_full_model_only(tm
 @pytest.mark.parametrize("level", ["full", "coarse"])
 def test_stored_metrics_are_those_of_the_trace_when_a_run_is_cut_short_too(level, tmp_path):
     out = tmp_path / "out"
-    ncsim("run", TWO_HOP, "-o", out, "--max-time", "3", "--trace", level)
+    ncsim("run", TWO_HOP, "-o", out, "--max-time", "5", "--trace", level)
 
     stored = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
 

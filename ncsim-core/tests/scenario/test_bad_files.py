@@ -57,7 +57,9 @@ def test_near_words_are_suggested(name, suggestion, with_antenna: Registry):
 
 
 def test_an_unknown_component_is_explained_by_the_registry(core: Registry):
-    with pytest.raises(ScenarioFaults, match=r"did you mean 'round_robin'.*installed: all_on_fastest, manual"):
+    with pytest.raises(
+        ScenarioFaults, match=r"did you mean 'round_robin'.*installed: all_on_fastest, manual"
+    ):
         load_scenario(HERE / "bad" / "unknown_component.yaml", registry=core)
 
 
