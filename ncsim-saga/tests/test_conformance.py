@@ -134,9 +134,6 @@ class TestBruteForce(Saga, SchedulerSuite):
 
 class TestSmt(Saga, SchedulerSuite):
     component = "smt"
-    expected_failures: ClassVar = {
-        "extremes_are_planned": "SAGA's SMT finds no schedule at all when a DAG needs no time"
-    }
     options: ClassVar = {}  # whatever solver is installed
     examples = 2
     max_nodes = 2

@@ -5,9 +5,18 @@ import json
 
 import pytest
 from ncsim_core.errors import PlacementError
-from ncsim_core.testing.builders import diamond, line, make_snapshot
+from ncsim_core.testing.builders import (
+    chain,
+    dag_of,
+    diamond,
+    line,
+    make_context,
+    make_snapshot,
+    network_of,
+)
 from ncsim_saga import worker
 from ncsim_saga.planning import PlanRequest, plan_with_saga
+from ncsim_saga.schedulers.saga_scheduler import SagaScheduler
 from ncsim_saga.virtual_network import virtual_network
 
 NETWORK = virtual_network(make_snapshot(line(3, capacities=(80.0, 100.0, 150.0))))
@@ -66,3 +75,13 @@ def test_serving_answers_line_by_line():
 
     lines = answers.getvalue().splitlines()
     assert [json.loads(line) for line in lines] == [{"placement": plan_with_saga(request)}] * 2
+
+
+def test_smt_answers_the_same_whatever_it_was_asked_before():
+    network = network_of([None] * 3, [(0, 1), (0, 2), (1, 2)], capacities=[100.0, 100.0, 50.0])
+    scheduler = SagaScheduler(make_context(network), name="smt")
+    dags = [chain(2), dag_of([], tasks=2), chain(2)]
+
+    first, _, again = (scheduler.schedule(dag, make_snapshot(network)) for dag in dags)
+
+    assert first == again

@@ -81,6 +81,41 @@ def test_examples_run_and_their_traces_are_in_order(path, tmp_path):
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
+@pytest.mark.parametrize("interference", ["proximity", "csma_clique", "csma_bianchi", "none"])
+@pytest.mark.parametrize(
+    "scheduler", ["all_on_fastest", "conflict_aware_heft", "uniform_discount_heft"]
+)
+def test_published_files_that_name_baselines_and_models_run(scheduler, interference, tmp_path):
+    path = tmp_path / "published.yaml"
+    path.write_text(
+        f"""
+name: published
+network:
+  nodes:
+    - {{id: n0, compute_capacity: 100, position: {{x: 0, y: 0}}}}
+    - {{id: n1, compute_capacity: 300, position: {{x: 30, y: 0}}}}
+  links:
+    - {{id: l01, from: n0, to: n1, bandwidth: 4}}
+    - {{id: l10, from: n1, to: n0, bandwidth: 4}}
+dags:
+  - id: dag_1
+    tasks:
+      - {{id: T0, compute_cost: 100, pinned_to: n0}}
+      - {{id: T1, compute_cost: 300}}
+    edges:
+      - {{from: T0, to: T1, data_size: 8}}
+config: {{scheduler: {scheduler}, interference: {interference}, interference_radius: 15.0}}
+""",
+        encoding="utf-8",
+    )
+
+    done = ncsim("run", path)
+
+    assert done.returncode == 0, done.stderr
+    assert f"scheduler {scheduler}" in done.stdout
+    assert f"interference {interference}" in done.stdout
+
+
 @pytest.mark.parametrize("path", PUBLISHED, ids=lambda path: path.stem)
 def test_what_is_translated_from_the_published_form_is_said(path):
     assert "note:" in ncsim("run", path).stderr

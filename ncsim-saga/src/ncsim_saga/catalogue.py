@@ -19,10 +19,13 @@ class CatalogueEntry:
         options: JSON Schema of each option; defaults are SAGA's own.
         walks_strings: It walks sets of plain strings, whose order ncsim cannot set from outside,
             so it runs in a child process with ``PYTHONHASHSEED=0`` (SPEC 22).
+        keeps_state: Its solver answers otherwise after it has answered something else, so each
+            plan gets a child process of its own.
         draws: It draws from the global ``random`` generator (SPEC 22).
         requires: Requirement beyond the distribution's own.
         capabilities: What it claims beyond its contract.
         source: Where the algorithm is published.
+        expected_failures: Conformance checks that it is known to fail, name to reason.
     """
 
     name: str
@@ -30,10 +33,17 @@ class CatalogueEntry:
     summary: str
     options: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     walks_strings: bool = False
+    keeps_state: bool = False
     draws: bool = False
     requires: tuple[str, ...] = ()
     capabilities: frozenset[str] = frozenset()
     source: str = ""
+    expected_failures: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def is_planned_in_child(self) -> bool:
+        """Return whether plans are made in another process."""
+        return self.walks_strings or self.keeps_state
 
     @property
     def factory(self) -> str:
@@ -108,6 +118,7 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "brute_force",
             "BruteForceScheduler",
             "Tries every placement in every order; for a handful of tasks only.",
+            capabilities=frozenset({"max_tasks=3"}),
         ),
         CatalogueEntry(
             "cpop",
@@ -184,6 +195,11 @@ SCHEDULERS: Final[Mapping[str, CatalogueEntry]] = {
             "SMTScheduler",
             "Makespan within epsilon of the least, by a solver; for a handful of tasks only.",
             _OPTIONS_OF_SMT,
+            keeps_state=True,
+            capabilities=frozenset({"max_tasks=2"}),
+            expected_failures={
+                "extremes_are_planned": "SAGA's SMT finds no schedule if a DAG needs no time"
+            },
         ),
         CatalogueEntry(
             "sufferage",

@@ -30,6 +30,7 @@ def _component(entry: CatalogueEntry) -> Component:
         requires=entry.requires,
         capabilities=entry.capabilities,
         source=entry.source,
+        expected_failures=entry.expected_failures,
     )
 
 

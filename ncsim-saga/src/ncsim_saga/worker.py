@@ -2,7 +2,8 @@
 
 BIL, MSBC and ETF walk sets of plain strings, whose order only the hash seed of the whole process
 decides (SPEC 22). The child starts with the first such plan, then serves this process for the
-rest of its life: SAGA is imported once. Requests and answers are single lines of JSON.
+rest of its life: SAGA is imported once. SMT's solver is not the same after a plan, so each of
+its plans gets a child of its own. Requests and answers are single lines of JSON.
 """
 
 import atexit
@@ -15,6 +16,8 @@ import threading
 from typing import IO, TYPE_CHECKING
 
 from ncsim_core.errors import NcsimError, PlacementError
+
+from ncsim_saga.catalogue import SCHEDULERS
 
 if TYPE_CHECKING:
     from ncsim_core.workflow import TaskId
@@ -92,12 +95,17 @@ def plan_in_child(request: "PlanRequest") -> "dict[TaskId, int]":
     Raises:
         PlacementError: SAGA gave up, left tasks out, or the child ended.
     """
+    is_alone = SCHEDULERS[request.scheduler].keeps_state
     with _lock:
+        if is_alone:
+            stop()
         try:
             answer = json.loads(_running_worker().ask(request.to_json()))
         except PlacementError:
             stop()
             raise
+        if is_alone:
+            stop()
     if "error" in answer:
         raise PlacementError(answer["error"])
     return dict(answer["placement"])

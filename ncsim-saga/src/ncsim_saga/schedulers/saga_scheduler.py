@@ -38,6 +38,6 @@ class SagaScheduler(Scheduler):
         request = PlanRequest(
             self._entry.name, virtual_network(snapshot), dag, self._options, self._seed
         )
-        plan = plan_in_child if self._entry.walks_strings else plan_with_saga
+        plan = plan_in_child if self._entry.is_planned_in_child else plan_with_saga
         nodes = snapshot.network.nodes
         return PlacementPlan({task: nodes[index].id for task, index in plan(request).items()})
