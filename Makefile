@@ -8,10 +8,10 @@ INSTALLER ?= uv
 VENV := .venv
 BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE  # start-up is speed: keep compiled modules
-PACKAGES := ncsim-core ncsim-wifi ncsim-saga ncsim-routing ncsim-viz
+PLUGINS := ncsim-wifi ncsim-saga ncsim-routing ncsim-viz
 STAMP := $(VENV)/.installed
-SETUP_INPUTS := pyproject.toml constraints.txt $(PACKAGES:%=%/pyproject.toml)
-EDITABLE := -e ./ncsim-core[testing] $(PACKAGES:ncsim-%=-e ./ncsim-%)
+SETUP_INPUTS := pyproject.toml constraints.txt ncsim-core/pyproject.toml $(PLUGINS:%=%/pyproject.toml)
+EDITABLE := -e ./ncsim-core[testing] $(PLUGINS:%=-e ./%)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run paper test check format schemas constraints clean

@@ -68,7 +68,7 @@ class BuildContext:
 
         The key must hold everything but the network that the value depends on.
         """
-        return self.cache.get_or_build((self.network.nodes, self.network.links, key), build)
+        return self.cache.get_or_build((self.network.topology, key), build)
 
     def rng(self, stream: str) -> "np.random.Generator":
         """Return a generator for a named stream; streams do not disturb each other."""

@@ -6,7 +6,8 @@ string ids appear only at the edges (files, traces, messages) and in tie-breaks.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from copy import copy
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NewType, TypeAlias
 
@@ -87,6 +88,27 @@ class LinkRates:
         return cls(tuple(map(float, bandwidth_MBps)), tuple(map(float, latency_s)))
 
 
+class Topology:
+    """Nodes and links as a dictionary key whose hash is worked out once."""
+
+    __slots__ = ("_hash", "links", "nodes")
+
+    def __init__(self, nodes: tuple[Node, ...], links: tuple[Link, ...]) -> None:
+        self.nodes = nodes
+        self.links = links
+        self._hash = hash((nodes, links))
+
+    @override
+    def __hash__(self) -> int:
+        return self._hash
+
+    @override
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Topology):
+            return NotImplemented
+        return self is other or (self.nodes, self.links) == (other.nodes, other.links)
+
+
 @dataclass(frozen=True)
 class Network:
     """Nodes and directed links, with the clean rates once a link model has decided them.
@@ -106,11 +128,12 @@ class Network:
 
     @override
     def __hash__(self) -> int:
-        return self._hash
+        return hash(self.topology)
 
     @cached_property
-    def _hash(self) -> int:
-        return hash((self.nodes, self.links))
+    def topology(self) -> "Topology":
+        """Return what the network is apart from its rates, as a key that is hashed once."""
+        return Topology(self.nodes, self.links)
 
     @cached_property
     def node_index(self) -> Mapping[NodeId, NodeIndex]:
@@ -160,7 +183,9 @@ class Network:
 
     def with_rates(self, rates: LinkRates) -> "Network":
         """Return the same network with its clean link rates decided."""
-        return replace(self, rates=rates)
+        rated = copy(self)  # checked already; what follows from nodes and links comes along
+        object.__setattr__(rated, "rates", rates)
+        return rated
 
     def route_bottleneck_MBps(self, route: Route) -> float:
         """Return the least clean bandwidth on a route; infinite for the empty route."""

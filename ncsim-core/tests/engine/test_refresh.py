@@ -4,72 +4,9 @@ import math
 from itertools import pairwise
 
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from ncsim_core.engine.outcome import RunStatus
 from ncsim_core.engine.setup import Reach
-from ncsim_core.engine.simulation import Simulation
-from ncsim_core.network import Link, LinkRates, Network, Node
-from ncsim_core.testing.toys import ToyInterference, models
-from ncsim_core.workflow import DAG, Dependency, Injection, Task
-
-SIZES_MB = st.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0, 10.0]) | st.floats(0.001, 20.0)
-
-
-@st.composite
-def networks(draw):
-    count = draw(st.integers(2, 6))
-    nodes = tuple(Node(f"n{k}", draw(st.sampled_from([50.0, 100.0, 300.0]))) for k in range(count))
-    pairs = [(a, b) for a in range(count) for b in range(count) if a != b]
-    chosen = draw(st.lists(st.sampled_from(pairs), min_size=1, max_size=12, unique=True))
-    ring = [(k, (k + 1) % count) for k in range(count)]
-    ends = list(dict.fromkeys([*ring, *chosen]))
-    links = tuple(Link(f"l{k}", f"n{a}", f"n{b}") for k, (a, b) in enumerate(ends))
-    bandwidths = draw(
-        st.lists(st.sampled_from([0.5, 1.0, 2.0, 3.0, 7.7]), min_size=len(ends), max_size=len(ends))
-    )
-    latencies = draw(
-        st.lists(st.sampled_from([0.0, 0.0, 0.1]), min_size=len(ends), max_size=len(ends))
-    )
-    return Network(nodes, links, LinkRates.of(bandwidths, latencies))
-
-
-@st.composite
-def dags(draw, dag_id, node_count):
-    count = draw(st.integers(1, 9))
-    tasks = tuple(
-        Task(
-            f"T{k}",
-            draw(st.sampled_from([0.0, 50.0, 100.0, 170.0])),
-            f"n{draw(st.integers(0, node_count - 1))}",
-        )
-        for k in range(count)
-    )
-    pairs = [(a, b) for b in range(count) for a in range(b)]
-    edges = draw(st.lists(st.sampled_from(pairs), max_size=14, unique=True)) if pairs else []
-    return DAG(dag_id, tasks, tuple(Dependency(f"T{a}", f"T{b}", draw(SIZES_MB)) for a, b in edges))
-
-
-@st.composite
-def interferences(draw, link_count):
-    indices = st.integers(0, link_count - 1)
-    neighbours = draw(st.dictionaries(indices, st.lists(indices, max_size=6), max_size=link_count))
-    return ToyInterference(neighbours, stop_at=draw(st.sampled_from([1, 2, 3, 99])))
-
-
-@st.composite
-def instances(draw):
-    network = draw(networks())
-    times_us = sorted([0, *draw(st.lists(st.sampled_from([0, 500_000, 1_000_003]), max_size=2))])
-    injections = [
-        Injection(at_us, draw(dags(f"d{k}", len(network.nodes))))
-        for k, at_us in enumerate(times_us)
-    ]
-    return network, injections, draw(interferences(len(network.links)))
-
-
-def simulation_of(instance, reach):
-    network, injections, interference = instance
-    return Simulation(network, models(network, injections, interference=interference), reach=reach)
+from ncsim_core.testing.whole_runs import run_cases
 
 
 def picture(simulation):
@@ -105,9 +42,9 @@ def assert_same(local, globally):
 
 
 @settings(max_examples=200, deadline=None)
-@given(instances())
-def test_local_refresh_equals_global_refresh_after_every_event(instance):
-    local, globally = (simulation_of(instance, reach) for reach in Reach)
+@given(run_cases())
+def test_local_refresh_equals_global_refresh_after_every_event(case):
+    local, globally = (case.simulation(reach=reach) for reach in Reach)
 
     while local.outcome is None:
         event, other = local.step(), globally.step()
@@ -117,9 +54,9 @@ def test_local_refresh_equals_global_refresh_after_every_event(instance):
 
 
 @settings(max_examples=60, deadline=None)
-@given(instances())
-def test_completed_runs_serve_every_byte_on_every_hop_once(instance):
-    simulation = simulation_of(instance, Reach.LOCAL)
+@given(run_cases())
+def test_completed_runs_serve_every_byte_on_every_hop_once(case):
+    simulation = case.simulation()
     outcome = simulation.run()
 
     if outcome.status is RunStatus.COMPLETED:
@@ -132,9 +69,9 @@ def test_completed_runs_serve_every_byte_on_every_hop_once(instance):
 
 
 @settings(max_examples=60, deadline=None)
-@given(instances())
-def test_a_node_never_runs_two_tasks(instance):
-    simulation = simulation_of(instance, Reach.LOCAL)
+@given(run_cases())
+def test_a_node_never_runs_two_tasks(case):
+    simulation = case.simulation()
     simulation.run()
 
     by_node = {}
@@ -147,15 +84,15 @@ def test_a_node_never_runs_two_tasks(instance):
 
 
 @settings(max_examples=60, deadline=None)
-@given(instances())
-def test_makespan_is_at_least_the_critical_path_at_full_speed(instance):
-    network, injections, _ = instance
-    simulation = simulation_of(instance, Reach.LOCAL)
+@given(run_cases())
+def test_makespan_is_at_least_the_critical_path_at_full_speed(case):
+    simulation = case.simulation()
     outcome = simulation.run()
 
     if outcome.status is RunStatus.COMPLETED:
         slack_us = 2 * len(simulation.state.tasks)  # each task and transfer may round by one
-        assert outcome.makespan_us + slack_us >= critical_path_us(simulation, injections, network)
+        fastest_us = critical_path_us(simulation, case.injections, case.network)
+        assert outcome.makespan_us + slack_us >= fastest_us
 
 
 def critical_path_us(simulation, injections, network):

@@ -22,7 +22,7 @@ from ncsim_core.testing.builders import (
     network_of,
     scattered,
 )
-from ncsim_core.testing.toys import ToyInterference, models
+from ncsim_core.testing.toys import ToyRadio, models
 from ncsim_core.workflow import PlacementPlan
 
 
@@ -97,7 +97,7 @@ def test_same_node_dependencies_cost_nothing():
 
 def test_zero_bytes_complete_after_latency_even_at_zero_rate():
     network = line(2, latency_s=0.5)
-    stopped = ToyInterference({0: [0]}, stop_at=0)
+    stopped = ToyRadio({0: [0]}, stop_at=0)
 
     simulation = run(
         network, chain(2, cost=0.0, size_MB=0.0, pins={0: 0, 1: 1}), interference=stopped
@@ -139,7 +139,7 @@ def test_zero_rate_transfer_resumes_when_competition_ends():
     edges = [(0, 1), (2, 3)]
     dag = dag_of(edges, tasks=4, cost=0.0, size_MB=1.0, pins={0: 0, 1: 1, 2: 2, 3: 3})
     # Link n2_n3 (index 2) stops while link n0_n1 (index 0) is active.
-    blocked = ToyInterference({2: [0]}, stop_at=1)
+    blocked = ToyRadio({2: [0]}, stop_at=1)
 
     simulation = run(network, dag, interference=blocked)
 
@@ -151,7 +151,7 @@ def test_zero_rate_transfer_resumes_when_competition_ends():
 def test_mutually_stalled_transfers_end_the_run_blocked_and_named():
     network = network_of([None] * 4, [(0, 1), (2, 3)], bandwidth_MBps=1.0)
     dag = dag_of([(0, 1), (2, 3)], tasks=4, cost=0.0, size_MB=1.0, pins={k: k for k in range(4)})
-    stalled = ToyInterference({0: [2], 2: [0]}, stop_at=1)
+    stalled = ToyRadio({0: [2], 2: [0]}, stop_at=1)
 
     outcome = run(network, dag, interference=stalled).outcome
 
@@ -164,7 +164,7 @@ def test_a_transfer_that_joins_a_stopped_link_is_paused_too():
     network = network_of([None] * 4, [(0, 1), (2, 3)], bandwidth_MBps=1.0)
     edges = [(0, 1), (2, 3), (4, 5)]
     dag = dag_of(edges, tasks=6, cost=0.0, size_MB=1.0, pins={0: 0, 1: 1, 2: 2, 3: 3, 4: 2, 5: 3})
-    blocked = ToyInterference({2: [0]}, stop_at=1)
+    blocked = ToyRadio({2: [0]}, stop_at=1)
 
     simulation = run(network, dag, interference=blocked)
 
@@ -297,7 +297,7 @@ def test_a_bad_plan_fails_the_run_and_names_the_scheduler(answer, message):
 
 @pytest.mark.parametrize("factor", [-0.1, 1.1, float("nan"), float("inf")])
 def test_a_factor_outside_zero_and_one_fails_the_run(factor):
-    class Wrong(ToyInterference):
+    class Wrong(ToyRadio):
         def factors(self, links, active):
             return super().factors(links, active) * 0 + factor
 

@@ -1,24 +1,8 @@
 """Appendix B of the paper: a two-hop route, sharing, and FIFO compute, event by event."""
 
-from ncsim_core.builtin.schedulers import ManualScheduler
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.outcome import RunStatus
-from ncsim_core.engine.simulation import Simulation
-from ncsim_core.network import Link, LinkRates, Network, Node
-from ncsim_core.testing.builders import inject, make_context
-from ncsim_core.testing.toys import models
-from ncsim_core.workflow import DAG, Dependency, Task
-
-NETWORK = Network(
-    (Node("a", 1.0), Node("b", 1.0), Node("c", 1.0)),
-    (Link("ab", "a", "b"), Link("bc", "b", "c")),
-    LinkRates((2.0, 2.0), (0.0, 0.0)),
-)
-DAG_B = DAG(
-    "example",
-    (Task("A", 1, "a"), Task("B", 2, "b"), Task("C", 1, "c"), Task("D", 1, "c")),
-    (Dependency("A", "C", 4.0), Dependency("B", "D", 1.0)),
-)
+from ncsim_core.testing.worked_example import worked_example
 
 
 class Diary(Observer):
@@ -44,9 +28,7 @@ class Diary(Observer):
 
 def run_example():
     diary = Diary()
-    scheduler = ManualScheduler(make_context(NETWORK))
-    simulation = Simulation(NETWORK, models(NETWORK, [inject(DAG_B)], scheduler=scheduler))
-    simulation.observe(diary)
+    simulation = worked_example(diary)
     simulation.run()
     return simulation, diary.lines
 

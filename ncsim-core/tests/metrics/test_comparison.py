@@ -8,8 +8,8 @@ from ncsim_core.metrics.comparison import compare_runs
 from ncsim_core.metrics.losses import Part
 from ncsim_core.network import LinkRates
 from ncsim_core.testing.builders import inject
-from ncsim_core.testing.toys import models
-from ncsim_core.testing.whole_runs import ToyRadio, run_cases
+from ncsim_core.testing.toys import ToyRadio, models
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import EXAMPLE, NETWORK
 from ncsim_core.trace.recorder import RunRecorder
 from ncsim_core.trace.records import TraceHeader

@@ -11,8 +11,8 @@ from ncsim_core.metrics.explanation import explain_run
 from ncsim_core.metrics.losses import LOSSES, Part, divide
 from ncsim_core.network import Link, LinkRates, Network, Node
 from ncsim_core.testing.builders import inject, make_context
-from ncsim_core.testing.toys import models
-from ncsim_core.testing.whole_runs import ToyRadio, run_cases
+from ncsim_core.testing.toys import ToyRadio, models
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.recorder import RunRecorder
 from ncsim_core.trace.records import TraceError

@@ -166,7 +166,7 @@ def test_each_check_of_a_plugin_catches_the_fault_planted_for_it(check, fake_dis
 def test_core_runs_without_the_extra_that_brings_the_checks():
     code = (
         "import sys; sys.modules['hypothesis'] = sys.modules['pytest'] = None;"
-        "from ncsim_core.testing import builders, GlobalRefresh;"
+        "from ncsim_core.testing import builders, oracle;"
         "from typer.testing import CliRunner; from ncsim_core.cli.plugins import app;"
         "print(repr(CliRunner().invoke(app, ['check']).exception))"
     )

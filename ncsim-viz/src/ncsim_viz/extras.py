@@ -6,7 +6,12 @@ from typing import Final
 from ncsim_core.contracts.interference_model import InterferenceModel
 from ncsim_core.errors import NcsimError
 from ncsim_core.metrics import compute_metrics
-from ncsim_core.metrics.comparison import Comparison, compare_runs
+from ncsim_core.metrics.comparison import compare_runs
+from ncsim_core.metrics.documents import (
+    chain_entry,
+    comparison_document,
+    explanation_document,
+)
 from ncsim_core.metrics.explanation import ChainItem, explain_run
 from ncsim_core.network import LinkIndex
 from ncsim_core.scenario.assembly import assemble
@@ -48,56 +53,13 @@ def explanation_of(run: RunTrace) -> dict[str, object] | None:
     def number_of(item: ChainItem) -> int:
         return (tasks if item.kind == "task" else transfers).get(item.label, -1)
 
-    return {
-        "makespan_us": explanation.makespan_us,
-        "totals_us": dict(explanation.totals),
-        "chain": [
-            {
-                "kind": item.kind,
-                "label": item.label,
-                "place": list(item.place),
-                "start_us": item.start_us,
-                "end_us": item.end_us,
-                "parts_us": dict(item.parts),
-                "number": number_of(item),
-            }
-            for item in explanation.chain
-        ],
-    }
+    chain = [chain_entry(item) | {"number": number_of(item)} for item in explanation.chain]
+    return explanation_document(explanation) | {"chain": chain}
 
 
 def comparison_of(first: RunTrace, second: RunTrace, names: tuple[str, str]) -> dict[str, object]:
     """Return what changed from one run to another, under the names of both."""
-    found: Comparison = compare_runs(first, second)
-    return {
-        "names": list(names),
-        "differences": [
-            {"setting": setting, "first": str(before), "second": str(after)}
-            for setting, before, after in found.differences
-        ],
-        "status": [found.first_status, found.second_status],
-        "makespan_s": [found.first_makespan_s, found.second_makespan_s],
-        "makespan_ratio": found.makespan_ratio,
-        "tasks": [
-            {
-                "label": change.label,
-                "nodes": [change.first_node, change.second_node],
-                "ended_us": change.ended_us,
-                "why": change.why,
-            }
-            for change in found.tasks
-        ],
-        "transfers": [
-            {
-                "label": change.label,
-                "routes": [list(change.first_route), list(change.second_route)],
-                "took_us": change.took_us,
-                "why": change.why,
-            }
-            for change in found.transfers
-        ],
-        "unmatched": list(found.unmatched),
-    }
+    return {"names": list(names), **comparison_document(compare_runs(first, second))}
 
 
 def relations_of(scenario: Path, run: RunTrace) -> tuple[dict[str, list[list[int]]] | None, str]:

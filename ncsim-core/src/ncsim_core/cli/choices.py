@@ -81,31 +81,6 @@ def _value(text: str) -> object:
         raise ScenarioError(f"--set: {word!r} is no JSON: {error}") from None
 
 
-def table(rows: Sequence[Sequence[object]], header: Sequence[str]) -> str:
-    """Return rows as aligned columns; numbers to the right."""
-    texts = [[_cell(value) for value in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(header, *texts, strict=True)]
-    is_number = [
-        bool(rows) and all(isinstance(row[i], int | float) or row[i] is None for row in rows)
-        for i in range(len(header))
-    ]
-    lines = [_aligned(header, widths, is_number), *(_aligned(t, widths, is_number) for t in texts)]
-    return "\n".join(line.rstrip() for line in lines)
-
-
-def _aligned(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
-    return "  ".join(
-        cell.rjust(width) if right else cell.ljust(width)
-        for cell, width, right in zip(cells, widths, is_number, strict=True)
-    )
-
-
-def _cell(value: object) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.6f}" if isinstance(value, float) else str(value)
-
-
 def component_line(config: "Config") -> str:
     """Return which components answer, in one line."""
     from ncsim_core.plugins import KINDS

@@ -1,6 +1,5 @@
 """``ncsim compare``: what changed between two runs, and why?"""
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,6 +27,7 @@ def compare(
     Example: ncsim compare solo/ full/
     """
     from ncsim_core.metrics.comparison import compare_runs
+    from ncsim_core.metrics.documents import comparison_document
     from ncsim_core.trace.files import json_text
     from ncsim_core.trace.loading import load_run
 
@@ -37,40 +37,6 @@ def compare(
         return
     for line in comparison_lines(comparison):
         typer.echo(line)
-
-
-def comparison_document(comparison: "Comparison") -> dict[str, object]:
-    """Return a comparison ready for JSON; changes in microseconds."""
-    ratio = comparison.makespan_ratio
-    return {
-        "differences": [each._asdict() for each in comparison.differences],
-        "status": [comparison.first_status, comparison.second_status],
-        "makespan_s": [comparison.first_makespan_s, comparison.second_makespan_s],
-        "makespan_ratio": None if ratio == math.inf else ratio,  # JSON has no infinity
-        "tasks": [
-            {
-                "label": change.label,
-                "nodes": [change.first_node, change.second_node],
-                "ready_us": change.ready_us,
-                "wait_us": change.wait_us,
-                "compute_us": change.compute_us,
-                "ended_us": change.ended_us,
-                "why": change.why,
-            }
-            for change in comparison.tasks
-        ],
-        "transfers": [
-            {
-                "label": change.label,
-                "routes": [list(change.first_route), list(change.second_route)],
-                "took_us": change.took_us,
-                "parts_us": dict(change.parts),
-                "why": change.why,
-            }
-            for change in comparison.transfers
-        ],
-        "unmatched": list(comparison.unmatched),
-    }
 
 
 def comparison_lines(comparison: "Comparison") -> "Iterator[str]":

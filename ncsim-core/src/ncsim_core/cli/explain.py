@@ -22,6 +22,7 @@ def explain(
 
     Example: ncsim explain out/
     """
+    from ncsim_core.metrics.documents import explanation_document
     from ncsim_core.metrics.explanation import explain_run
     from ncsim_core.trace.files import json_text
     from ncsim_core.trace.loading import load_run
@@ -32,25 +33,6 @@ def explain(
         return
     for line in explanation_lines(explanation):
         typer.echo(line)
-
-
-def explanation_document(explanation: "Explanation") -> dict[str, object]:
-    """Return an explanation ready for JSON; all times in microseconds."""
-    return {
-        "makespan_us": explanation.makespan_us,
-        "totals_us": dict(explanation.totals),
-        "chain": [
-            {
-                "kind": item.kind,
-                "label": item.label,
-                "place": list(item.place),
-                "start_us": item.start_us,
-                "end_us": item.end_us,
-                "parts_us": dict(item.parts),
-            }
-            for item in explanation.chain
-        ],
-    }
 
 
 def explanation_lines(explanation: "Explanation") -> list[str]:

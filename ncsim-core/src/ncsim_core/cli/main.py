@@ -4,7 +4,6 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
-from enum import IntEnum
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated
 
@@ -26,19 +25,9 @@ from ncsim_core.cli import (
     trace,
     validate,
 )
+from ncsim_core.cli.exit_codes import ExitCode
 from ncsim_core.errors import EngineError, NcsimError
 from ncsim_core.plugins import COMMAND_GROUP
-
-
-class ExitCode(IntEnum):
-    """What ``ncsim`` tells the shell."""
-
-    OK = 0
-    INVALID_INPUT = 1
-    RUN_DID_NOT_COMPLETE = 2
-    INTERNAL_ERROR = 3
-    INTERRUPTED = 130
-
 
 app = typer.Typer(
     name="ncsim",

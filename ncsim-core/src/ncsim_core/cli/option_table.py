@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import cast
 
+from ncsim_core.cli.tables import aligned
 from ncsim_core.registry.option_schemas import properties_of
 
 HEADINGS = ("option", "type", "default", "bounds", "description")
@@ -28,12 +29,7 @@ def option_table(schema: Mapping[str, object]) -> str:
     rows = list(_rows(schema, ""))
     if not rows:
         return "no options"
-    table = [HEADINGS, *rows]
-    widths = [max(len(row[column]) for row in table) for column in range(len(HEADINGS))]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in table
-    )
+    return aligned(rows, HEADINGS)
 
 
 def _rows(schema: Mapping[str, object], prefix: str) -> Iterator[Sequence[str]]:

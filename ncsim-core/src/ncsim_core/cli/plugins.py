@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ncsim_core.cli.exit_codes import ExitCode
 from ncsim_core.errors import PluginError, ScenarioError
 from ncsim_core.plugins import KINDS
 
@@ -94,7 +95,7 @@ def check(
     else:
         typer.echo(f"in all: {_counts(results)}")
     if any(each.is_bad for each in results):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.INVALID_INPUT)
 
 
 @app.command()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ncsim_core.cli.choices import table as aligned
+from ncsim_core.cli.tables import aligned
 from ncsim_core.errors import ScenarioError
 
 if TYPE_CHECKING:

@@ -20,12 +20,11 @@ from ncsim_core.cli.choices import (
     limits_of,
     overrides_of,
 )
+from ncsim_core.cli.exit_codes import ExitCode
 
 if TYPE_CHECKING:
     from ncsim_core.api import RunResult
     from ncsim_core.scenario.model import Scenario
-
-RUN_DID_NOT_COMPLETE = 2
 
 
 def run(  # noqa: PLR0913 - one parameter per option
@@ -72,7 +71,7 @@ def run(  # noqa: PLR0913 - one parameter per option
     if output is not None and not as_json:
         typer.echo(f"  written    {output}/")
     if result.makespan_s is None:
-        raise typer.Exit(RUN_DID_NOT_COMPLETE)
+        raise typer.Exit(ExitCode.RUN_DID_NOT_COMPLETE)
 
 
 def report(scenario: "Scenario", result: "RunResult") -> str:

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ncsim_core.cli.exit_codes import ExitCode
 from ncsim_core.cli.progress import ProgressLine
 from ncsim_core.errors import ScenarioError
 
 if TYPE_CHECKING:
     from ncsim_core.sweep.running import SweepResults
-
-RUN_DID_NOT_COMPLETE = 2
 
 
 def sweep(  # noqa: PLR0913 - one parameter per option
@@ -62,7 +61,7 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         counts = _carried_out(results, quiet=quiet)
     typer.echo(f"{results.plan.name}: {_summary(counts)}, in {output}/")
     if counts.keys() - {"completed"}:
-        raise typer.Exit(RUN_DID_NOT_COMPLETE)
+        raise typer.Exit(ExitCode.RUN_DID_NOT_COMPLETE)
 
 
 def _carried_out(results: "SweepResults", *, quiet: bool) -> Counter[str]:
@@ -77,7 +76,7 @@ def _carried_out(results: "SweepResults", *, quiet: bool) -> Counter[str]:
         line.clear()
         message = "interrupted; what was done is kept, the same command goes on from there"
         print(message, file=sys.stderr)  # noqa: T201 - the command line speaks through stderr
-        raise typer.Exit(130) from None
+        raise typer.Exit(ExitCode.INTERRUPTED) from None
     finally:
         line.clear()
     return counts

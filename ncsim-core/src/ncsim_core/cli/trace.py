@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ncsim_core.cli.exit_codes import ExitCode
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -57,7 +59,7 @@ def check(
         for report in reports:
             _print_report(report)
     if any(report.findings for report in reports):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.INVALID_INPUT)
 
 
 def _print_report(report: "TraceReport") -> None:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from ncsim_core.cli.choices import ScenarioPath, Settings, component_line, overrides_of
+from ncsim_core.cli.exit_codes import ExitCode
 
 
 def validate(
@@ -36,7 +37,7 @@ def validate(
     if as_json:
         typer.echo(json.dumps(answers, indent=2))
     if not all(answer["valid"] for answer in answers):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.INVALID_INPUT)
 
 
 def _summary(path: ScenarioPath, overrides: dict[str, object]) -> str:

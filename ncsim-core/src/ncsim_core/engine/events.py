@@ -61,4 +61,3 @@ class TransferStart:
 Event: TypeAlias = (
     DagInject | TaskComplete | TransferComplete | TaskReady | TaskStart | TransferStart
 )
-EVENT_TYPES = (DagInject, TaskComplete, TransferComplete, TaskReady, TaskStart, TransferStart)

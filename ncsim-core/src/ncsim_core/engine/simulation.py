@@ -56,12 +56,12 @@ class Simulation:
         reach: Reach = Reach.LOCAL,
     ) -> None:
         self.setup = Setup.of(network, models, limits or Limits(), reach)
-        self.state = State.of(self.setup, observers)
+        self.state = State.of(self.setup)
         self.outcome: Outcome | None = None
         for number, injection in enumerate(self.setup.injections):
             self.state.queue.push(injection.at_us, DagInject.priority, DagInject(number))
-        for observer in self.state.observers:
-            observer.run_started(self.setup)
+        for observer in observers:
+            self.observe(observer)
 
     def observe(self, observer: Observer) -> None:
         """Let somebody watch the rest of the run.
@@ -169,7 +169,7 @@ def _blocked_detail(state: State, setup: Setup) -> str:
     """Return which transfers wait at zero rate, and on which link."""
     lines = []
     for transfer in state.transfers.values():
-        if transfer.started_us is None or transfer.ended_us is not None:
+        if not transfer.is_under_way:
             continue
         dag = setup.injections[transfer.entry.dag].dag
         source, target = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -82,6 +81,11 @@ class Transfer:
     started_us: Instant | None = None
     ended_us: Instant | None = None
 
+    @property
+    def is_under_way(self) -> bool:
+        """Return whether byte service has begun and not ended."""
+        return self.started_us is not None and self.ended_us is None
+
 
 @dataclass(slots=True, eq=False)
 class NodeState:
@@ -140,8 +144,8 @@ class State:
     links: list[LinkState]
     interference: InterferenceSession
     queue: EventQueue[Event]
-    observers: tuple[Observer, ...]
-    rate_observers: tuple[Observer, ...]
+    observers: tuple[Observer, ...] = ()
+    rate_observers: tuple[Observer, ...] = ()
     now_us: Instant = 0
     events: int = 0
     unfinished_tasks: int = 0
@@ -150,13 +154,12 @@ class State:
     unroutable: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, setup: Setup, observers: Iterable[Observer]) -> State:
+    def of(cls, setup: Setup) -> State:
         """Return the state before the first event."""
         models = setup.models
         who_queues = models.identity("queue_model")
         who_interferes = models.identity("interference_model")
         session = asked(who_interferes, lambda: _session(setup))
-        watching = tuple(observers)
         return cls(
             tasks=[TaskRun(entry, entry.incoming_count) for entry in setup.tasks],
             transfers={},
@@ -167,8 +170,6 @@ class State:
             links=[LinkState() for _ in setup.network.links],
             interference=CheckedSession(session, who_interferes),
             queue=EventQueue(),
-            observers=watching,
-            rate_observers=tuple(each for each in watching if each.wants_rates),
             unfinished_tasks=len(setup.tasks),
         )
 

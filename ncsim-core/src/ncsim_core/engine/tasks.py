@@ -64,7 +64,7 @@ def snapshot(state: State, setup: Setup) -> NetworkSnapshot:
 def _active_transfers(state: State, setup: Setup) -> list[ActiveTransfer]:
     active = []
     for transfer in state.transfers.values():
-        if transfer.started_us is None or transfer.ended_us is not None:
+        if not transfer.is_under_way:
             continue
         source, target = (state.tasks[n] for n in (transfer.entry.source, transfer.entry.target))
         elapsed_s = s_from_us(state.now_us - transfer.credited_us)

@@ -80,17 +80,6 @@ def parallel_links(count: int, separation_m: float, length_m: float = 30.0) -> N
     return Network(tuple(nodes), tuple(links))
 
 
-def parallel_transfers(count: int, size_MB: float = PAYLOAD_MB) -> DAG:
-    """Return one transfer for each of ``parallel_links``: pinned tasks of no cost at both ends."""
-    tasks = []
-    dependencies = []
-    for i in range(count):
-        source, target = TaskId(f"S{i}"), TaskId(f"R{i}")
-        tasks += [Task(source, 0.0, NodeId(f"s{i}")), Task(target, 0.0, NodeId(f"r{i}"))]
-        dependencies.append(Dependency(source, target, size_MB))
-    return DAG(DagId("transfers"), tuple(tasks), tuple(dependencies))
-
-
 def _position(number: int, size: int) -> Position:
     row, column = divmod(number, size)
     return Position(SPACING_m * column, SPACING_m * row)

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -146,10 +146,3 @@ def _is_numeric(rows: Sequence[Sequence[Any]], column: int) -> bool:
 
 def _escaped(text: str) -> str:
     return "".join(f"\\{each}" if each in "_%&#$" else each for each in text)
-
-
-def unique_names(columns: Sequence[str]) -> Iterator[str]:
-    """Yield the last word of each path where it is unique, else the whole path."""
-    ends = [column.rpartition(".")[2] for column in columns]
-    for column, end in zip(columns, ends, strict=True):
-        yield end if ends.count(end) == 1 else column

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ncsim_core.testing.checking import check_component
-    from ncsim_core.testing.oracle import GlobalRefresh
     from ncsim_core.testing.results import CheckResult
     from ncsim_core.testing.suites import (
         ComponentSuite,
@@ -33,7 +32,6 @@ __all__ = [
     "CheckResult",
     "ComponentSuite",
     "DAGSourceSuite",
-    "GlobalRefresh",
     "InterferenceModelSuite",
     "LinkModelSuite",
     "PluginSuite",
@@ -45,7 +43,6 @@ __all__ = [
 
 _HOME = {
     "CheckResult": "ncsim_core.testing.results",
-    "GlobalRefresh": "ncsim_core.testing.oracle",
     "check_component": "ncsim_core.testing.checking",
 }
 

@@ -1,53 +1,16 @@
 """Slow and obvious answers that fast ones are compared with."""
 
 from collections import deque
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from typing_extensions import override
 
-from ncsim_core.contracts.interference_model import (
-    Competition,
-    InterferenceModel,
-    InterferenceSession,
-    PlainSession,
-)
 from ncsim_core.contracts.routing_model import RoutingModel
-from ncsim_core.network import LinkIndex, Network, NodeIndex, Route
+from ncsim_core.network import Network, NodeIndex, Route
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-
-class GlobalRefresh(InterferenceModel):
-    """The same model, asked about every active link after every change.
-
-    A run with this must equal the run with the model itself: local refresh is exact.
-    """
-
-    def __init__(self, model: InterferenceModel) -> None:
-        self._model = model
-
-    @override
-    def factors(
-        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
-    ) -> "NDArray[np.float64]":
-        return self._model.factors(links, active)
-
-    @override
-    def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
-        return self._model.reach(changed)
-
-    @override
-    def competition(
-        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
-    ) -> Sequence[Competition]:
-        return self._model.competition(links, active)
-
-    @override
-    def open_session(self) -> InterferenceSession:
-        return PlainSession(self._model, is_global=True)
+    pass
 
 
 class FewestHops(RoutingModel):

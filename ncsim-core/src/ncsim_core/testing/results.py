@@ -1,6 +1,5 @@
 """Checks and what comes of them, as data."""
 
-import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -27,11 +26,6 @@ class Check:
     capability: str | None
     is_drawn: bool
     drawn: tuple[str, ...]
-
-    @property
-    def claim(self) -> str:
-        """Return the first line of its docstring."""
-        return (inspect.getdoc(self.body) or self.name).splitlines()[0]
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Small components for tests of the engine: plain, deterministic, with every hard case."""
 
 from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from typing_extensions import override
@@ -25,18 +26,24 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class ToyInterference(InterferenceModel):
-    """Divides by the active neighbours, and stops a link that too many of them surround.
+class ToyRadio(InterferenceModel):
+    """Contention divides by the active neighbours; each hidden interferer takes a quarter.
 
     Args:
-        neighbours: By link, the links that slow it down.
+        neighbours: By link, the links it shares the channel with.
+        hidden: By link, the links that disturb its receiver unheard.
         stop_at: Number of active neighbours from which the factor is 0.
     """
 
     def __init__(
-        self, neighbours: Mapping[LinkIndex, Collection[LinkIndex]], stop_at: int = 99
+        self,
+        neighbours: Mapping[LinkIndex, Collection[LinkIndex]],
+        hidden: Mapping[LinkIndex, Collection[LinkIndex]] = MappingProxyType({}),
+        *,
+        stop_at: int = 99,
     ) -> None:
-        self._neighbours = {link: frozenset(others) for link, others in neighbours.items()}
+        self._neighbours = neighbours
+        self._hidden = hidden
         self._stop_at = stop_at
 
     @override
@@ -45,24 +52,28 @@ class ToyInterference(InterferenceModel):
     ) -> "NDArray[np.float64]":
         import numpy as np
 
-        counts = [len(self._active_neighbours(link, active)) for link in links]
-        return np.array([0.0 if n >= self._stop_at else 1.0 / (1 + n) for n in counts])
+        against = self.competition(links, active)
+        return np.array([self._contention(each) * each.hidden_factor for each in against])
+
+    def _contention(self, against: Competition) -> float:
+        return 0.0 if against.contenders >= self._stop_at else 1.0 / (1 + against.contenders)
 
     @override
     def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
-        near = {link for link, others in self._neighbours.items() if others & set(changed)}
+        tables = (self._neighbours, self._hidden)
+        near = {link for table in tables for link in table if set(table[link]) & set(changed)}
         return near | set(changed)
 
     @override
     def competition(
         self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
     ) -> Sequence[Competition]:
-        return [Competition(len(self._active_neighbours(link, active))) for link in links]
+        return [self._against(link, set(active) - {link}) for link in links]
 
-    def _active_neighbours(
-        self, link: LinkIndex, active: Collection[LinkIndex]
-    ) -> frozenset[LinkIndex]:
-        return self._neighbours.get(link, frozenset()).intersection(active) - {link}
+    def _against(self, link: LinkIndex, others: set[LinkIndex]) -> Competition:
+        contenders = others.intersection(self._neighbours.get(link, ()))
+        hidden = others.intersection(self._hidden.get(link, ())) - contenders
+        return Competition(len(contenders), len(hidden), 0.75 ** len(hidden))
 
 
 def models(

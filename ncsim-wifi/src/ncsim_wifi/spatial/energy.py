@@ -12,7 +12,6 @@ from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 
-LARGEST_PROBABILITY = 0.97
 TINY = 1e-12
 
 
@@ -79,18 +78,6 @@ def subset_weights(sets: EnergySets, on: FloatArray) -> FloatArray:
     odds = on / (1.0 - on)
     factors = np.where(sets.subsets[None, :, :], odds[:, None, :], 1.0)
     return np.where(sets.feasible, factors.prod(axis=2), 0.0)
-
-
-class Gates(NamedTuple):
-    """How summed power keeps links and their interferers apart, by relation.
-
-    Args:
-        before: al, for frames that begin while the interferer is on.
-        during: be, for interferers that begin during a frame.
-    """
-
-    before: FloatArray
-    during: FloatArray
 
 
 class GateMasks(NamedTuple):

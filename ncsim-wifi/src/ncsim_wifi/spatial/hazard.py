@@ -42,22 +42,6 @@ def hazard_table() -> HazardTable:
     )
 
 
-def ln_hazard_at(scheme: int, ratio_dB: float) -> float:
-    """Return ln h of one scheme, straight in dB between the points and beyond them.
-
-    Source: MODEL 1, frame loss.
-
-    >>> round(float(np.exp(ln_hazard_at(5, 16.07))), 6)
-    1.0
-    """
-    table = hazard_table()
-    points_dB = table.ratio_dB[scheme]
-    ln_hazard = float(np.interp(ratio_dB, points_dB, table.ln_hazard))
-    ln_hazard += LEFT_SLOPE_PER_dB * min(0.0, ratio_dB - float(points_dB[0]))
-    ln_hazard += RIGHT_SLOPE_PER_dB * max(0.0, ratio_dB - float(points_dB[-1]))
-    return min(max(ln_hazard, LOWEST_LN), HIGHEST_LN)
-
-
 @cache
 def _grid() -> FloatArray:
     """Return ln h on an even grid of ratios, shape (schemes, steps); all points lie on it."""

@@ -17,7 +17,6 @@ from ncsim_wifi.validation.scenes import Flow, Scene
 
 SOLO = {"type": "wifi", "options": {"rate": "solo"}}
 RAW_PHY = {"type": "wifi", "options": {"rate": "raw_phy"}}
-CSMA_BIANCHI = {"type": "csma_bianchi", "options": {}}
 FIXED_CAPTURE = {"type": "csma_bianchi", "options": {"hidden_model": "fixed_capture"}}
 
 

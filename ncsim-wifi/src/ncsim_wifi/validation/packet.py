@@ -15,7 +15,7 @@ CONTENTION_SPACING_m = 5.0
 OVERLAP_SPACING_m = 60.0
 RATIO_SEPARATION_m, RECOVERY_SEPARATION_m = "80", "120"
 RATE_DIGITS = half_a_digit(3)
-A_START_s, A_END_s, B_START_s, B_END_s = 0.5, 5.5, 2.0, 4.0
+A_START_s, B_START_s, B_END_s = 0.5, 2.0, 4.0
 
 
 def rows() -> Iterator[Row]:

@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
+from ncsim_core.cli.tables import aligned
+
 Stage: TypeAlias = Literal["internal", "literature", "packet"]
 Verdict: TypeAlias = Literal["pass", "FAIL", "differs"]
 
@@ -80,12 +82,7 @@ HEADINGS = ("experiment", "case", "quantity", "expected", "measured", "error", "
 
 def table_text(rows: Iterable[Row]) -> str:
     """Return rows as an aligned table."""
-    cells = [HEADINGS, *(_cells(row) for row in rows)]
-    widths = [max(len(row[column]) for row in cells) for column in range(len(HEADINGS))]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in cells
-    )
+    return aligned([_cells(row) for row in rows], HEADINGS)
 
 
 def _cells(row: Row) -> tuple[str, ...]:

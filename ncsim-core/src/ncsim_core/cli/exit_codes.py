@@ -1,0 +1,13 @@
+"""What ``ncsim`` tells the shell; every verb, those of plug-ins too, takes it from here."""
+
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """How a command ended."""
+
+    OK = 0
+    INVALID_INPUT = 1
+    RUN_DID_NOT_COMPLETE = 2
+    INTERNAL_ERROR = 3
+    INTERRUPTED = 130
