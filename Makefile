@@ -10,6 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE  # start-up is speed: keep compiled modules
 PLUGINS := ncsim-wifi ncsim-saga ncsim-routing ncsim-viz
 STAMP := $(VENV)/.installed
+DEV_STAMP := $(VENV)/.installed-dev
 SETUP_INPUTS := pyproject.toml constraints.txt ncsim-core/pyproject.toml $(PLUGINS:%=%/pyproject.toml)
 EDITABLE := -e ./ncsim-core[testing] $(PLUGINS:%=-e ./%)
 
@@ -19,7 +20,7 @@ EDITABLE := -e ./ncsim-core[testing] $(PLUGINS:%=-e ./%)
 help:  ## Show what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-setup: $(STAMP)  ## Make .venv with the five packages (done by the others when needed)
+setup: $(DEV_STAMP)  ## Make .venv with the five packages and all tools (done by the others when needed)
 
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -27,36 +28,45 @@ $(VENV)/.created:
 	$(PYTHON) -m venv $(VENV)
 	touch $@
 
+ifeq ($(INSTALLER),uv)
+INSTALL := $(BIN)/uv pip install --quiet --python $(BIN)/python -c constraints.txt
+else
+INSTALL := $(BIN)/python -m pip install --quiet -c constraints.txt
+endif
+
 $(STAMP): $(VENV)/.created $(SETUP_INPUTS)
 ifeq ($(INSTALLER),uv)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt uv
-	$(BIN)/uv pip install --quiet --python $(BIN)/python -c constraints.txt $(EDITABLE) --group dev
 else
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
-	$(BIN)/python -m pip install --quiet -c constraints.txt $(EDITABLE) --group dev
 endif
+	$(INSTALL) $(EDITABLE)
+	touch $@
+
+$(DEV_STAMP): $(STAMP)  # what tests and checks need besides
+	$(INSTALL) --group dev
 	touch $@
 
 run: $(STAMP)  ## Run the example in Solo and Full, then the paper's 108-run study
 	@$(BIN)/python examples/paper/main_job.py
 
-paper: $(STAMP)  ## Reproduce every workflow table and figure of the paper, row by row
+paper: $(DEV_STAMP)  ## Reproduce every workflow table and figure of the paper, row by row
 	@$(BIN)/python examples/paper/reproduce.py
 
-test: $(STAMP)  ## Run all tests
-	$(BIN)/python -m pytest
+test: $(DEV_STAMP)  ## Run all tests, on every core
+	$(BIN)/python -m pytest -n auto
 
-check: $(STAMP)  ## Formatting, lint, types, import rules
+check: $(DEV_STAMP)  ## Formatting, lint, types, import rules
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-format: $(STAMP)  ## Format and mend what can be mended
+format: $(DEV_STAMP)  ## Format and mend what can be mended
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-schemas: $(STAMP)  ## Write schemas/ anew from the five packages
+schemas: $(DEV_STAMP)  ## Write schemas/ anew from the five packages
 	NCSIM_PLUGINS=ncsim-core,ncsim-wifi,ncsim-saga,ncsim-routing,ncsim-viz $(BIN)/ncsim schema --write schemas
 
 constraints:  ## Pin every dependency anew
