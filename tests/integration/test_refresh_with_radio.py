@@ -1,17 +1,24 @@
-"""Local refresh equals global refresh under the real radio model, on random geometries."""
+"""The engine under the real radio model, on random geometries.
+
+Local refresh equals global refresh, and both equal an exact engine that was written apart.
+"""
 
 import math
 
-from hypothesis import given, settings
+import pytest
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from ncsim_core.api import result_of
 from ncsim_core.context import BuildContext, ModelCache
 from ncsim_core.engine.setup import Reach
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.network import Link, Network, Node, Position
 from ncsim_core.registry import get_registry
+from ncsim_core.testing.reference_engine import ReferenceEngine
 from ncsim_core.testing.toys import models
 from ncsim_core.workflow import DAG, Dependency, Injection, Task
 
+IS_NIGHTLY = settings.get_current_profile_name() == "nightly"
 PLACES_m = st.integers(0, 160)
 RADIOS = st.fixed_dictionaries(
     {
@@ -68,6 +75,24 @@ def picture(simulation):
         flows[number] = (transfer.rate_MBps, max(0.0, transfer.remaining_MB - due_MB))
     times = [(task.ready_us, task.started_us, task.ended_us) for task in state.tasks]
     return state.now_us, times, flows
+
+
+@settings(max_examples=2000 if IS_NIGHTLY else 60, deadline=None)
+@given(instances())
+def test_the_engine_agrees_with_the_exact_reference_to_the_microsecond(instance):
+    simulation = simulation_of(instance, Reach.LOCAL)
+    reference = ReferenceEngine(simulation.setup.network, simulation.setup.models).run()
+    assume(not reference.is_too_close)
+
+    outcome = simulation.run()
+
+    ends = [(outcome.status, outcome.events, outcome.ended_us, outcome.makespan_us)]
+    ends += [(task.ready_us, task.started_us, task.ended_us) for task in simulation.state.tasks]
+    expected = [(reference.status, reference.events, reference.now_us, reference.makespan_us)]
+    expected += [(job.ready_us, job.started_us, job.ended_us) for job in reference.jobs]
+    assert ends == expected
+    served_MB = [link.served_MB for link in result_of(simulation).links]
+    assert served_MB == pytest.approx([float(each) for each in reference.served_MB], abs=1e-9)
 
 
 @settings(max_examples=80, deadline=None)
