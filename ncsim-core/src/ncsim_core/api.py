@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from ncsim_core.engine.accompanying import accompanied
 from ncsim_core.engine.outcome import RunStatus
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.scenario.assembly import assemble
@@ -157,8 +158,10 @@ def simulate(
     **overrides: object,
 ) -> RunResult:
     """Run a scenario to its end; arguments and errors as for ``prepare``."""
-    simulation = prepare(scenario, limits=limits, observers=observers, **overrides)
-    simulation.run()
+    chosen = overridden(scenario, overrides)
+    simulation = prepare(chosen, limits=limits, observers=observers)
+    with accompanied(simulation, chosen.name, chosen.config.seed):
+        simulation.run()
     return result_of(simulation)
 
 

@@ -36,7 +36,7 @@ def ncsim_components() -> Iterable[Component]:
             name="direct",
             factory="ncsim_core.builtin.routing_models:DirectRouting",
             summary="Takes the one link from source to target; no multi-hop routes.",
-            capabilities=frozenset({"single_hop"}),
+            capabilities=frozenset({"single_hop", "pure"}),
         ),
         Component(
             kind="link_model",

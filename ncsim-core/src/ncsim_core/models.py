@@ -9,7 +9,7 @@ from ncsim_core.contracts.dag_source import DAGSource
 from ncsim_core.contracts.interference_model import InterferenceModel
 from ncsim_core.contracts.link_model import LinkModel
 from ncsim_core.contracts.queue_model import QueueModel
-from ncsim_core.contracts.routing_model import RoutingModel
+from ncsim_core.contracts.routing_model import RouteTable, RoutingModel
 from ncsim_core.contracts.scheduler import Scheduler
 
 
@@ -50,6 +50,7 @@ class Models:
         new_queue: Builds the waiting line of one node.
         dag_source: Says which DAGs arrive.
         identities: By kind, who these are.
+        routes: Routes of the run's network that earlier runs have worked out, if they are shared.
     """
 
     scheduler: Scheduler
@@ -59,6 +60,7 @@ class Models:
     new_queue: Callable[[], QueueModel]
     dag_source: DAGSource
     identities: Mapping[str, ComponentIdentity] = field(default_factory=dict)
+    routes: RouteTable | None = None
 
     def identity(self, kind: str) -> ComponentIdentity:
         """Return who answers for a kind."""

@@ -112,7 +112,9 @@ class Component:
             model that wants such a link model. ``monotone``, ``scale_invariant``,
             ``objective=hops|latency|bottleneck``, ``order=fifo|lifo|shortest|longest``:
             extra properties to be tested. ``single_hop``: a routing model that only ever
-            takes one link. ``max_tasks=<n>``: a scheduler to be checked on small DAGs only.
+            takes one link. ``pure``: a routing model whose answers follow from network
+            and options alone, no seed and no section, so that runs share them. ``max_tasks=<n>``: a
+            scheduler to be checked on small DAGs only.
         expected_failures: Conformance checks that it is known to fail, name to reason.
         source: Where the method is described: equation, paper, DOI.
     """

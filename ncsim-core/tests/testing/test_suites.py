@@ -19,7 +19,7 @@ PLANTED = Path(__file__).parent / "planted"
 
 NUMBER_OF_CHECKS = {
     "scheduler": 14,
-    "routing_model": 16,
+    "routing_model": 17,
     "link_model": 13,
     "interference_model": 21,
     "queue_model": 14,

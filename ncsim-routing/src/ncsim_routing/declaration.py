@@ -16,7 +16,7 @@ def ncsim_components() -> Iterable[Component]:
             name="widest_path",
             factory="ncsim_routing.routing_models.widest_path:WidestPathRouting",
             summary="Maximises the least clean bandwidth along the route.",
-            capabilities=frozenset({"objective=bottleneck"}),
+            capabilities=frozenset({"objective=bottleneck", "pure"}),
             source="Section IV-E, WidestPath",
         ),
         Component(
@@ -24,7 +24,7 @@ def ncsim_components() -> Iterable[Component]:
             name="minimum_hop",
             factory="ncsim_routing.routing_models.minimum_hop:MinimumHopRouting",
             summary="Takes the fewest links.",
-            capabilities=frozenset({"objective=hops"}),
+            capabilities=frozenset({"objective=hops", "pure"}),
             source="Section IV-E, MinimumHop",
         ),
         Component(
@@ -32,7 +32,7 @@ def ncsim_components() -> Iterable[Component]:
             name="shortest_path",
             factory="ncsim_routing.routing_models.shortest_path:ShortestPathRouting",
             summary="Minimises the sum of configured latencies.",
-            capabilities=frozenset({"objective=latency"}),
+            capabilities=frozenset({"objective=latency", "pure"}),
             source="Section IV-E, ShortestPath",
         ),
     ]

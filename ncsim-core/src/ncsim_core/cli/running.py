@@ -3,8 +3,7 @@
 import platform
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -12,11 +11,11 @@ from typing import cast
 from ncsim_core import __version__
 from ncsim_core.api import RunResult, result_of
 from ncsim_core.cli.progress import ProgressLine, RunProgress
+from ncsim_core.engine.accompanying import accompanied
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.errors import ScenarioError
-from ncsim_core.plugins import RunInfo
 from ncsim_core.scenario.assembly import assemble
 from ncsim_core.scenario.model import Scenario
 from ncsim_core.trace.files import json_text
@@ -78,24 +77,10 @@ def execute(request: RunRequest) -> RunResult:
 def _simulated(request: RunRequest, observers: list[Observer]) -> RunResult:
     scenario = request.scenario
     assembly = assemble(scenario)
-    run = RunInfo(scenario.name, scenario.config.seed, assembly.models.identities)
     simulation = Simulation(assembly.network, assembly.models, request.limits, observers)
-    with _accompanied(run, simulation):
+    with accompanied(simulation, scenario.name, scenario.config.seed):
         simulation.run()
     return result_of(simulation)
-
-
-@contextmanager
-def _accompanied(run: RunInfo, simulation: Simulation) -> Iterator[None]:
-    """Tell plug-ins that a run starts and how it ended."""
-    from ncsim_core.registry import get_registry
-
-    registry = get_registry()
-    registry.announce_start(run)
-    yield
-    if simulation.outcome is not None:
-        status, makespan_s = str(simulation.outcome.status), simulation.outcome.makespan_s
-        registry.announce_finish(run, status, makespan_s)
 
 
 def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> RunResult:

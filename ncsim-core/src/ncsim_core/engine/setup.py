@@ -129,7 +129,7 @@ class Setup:
             dependencies += entries
             tasks += _task_entries(number, dag, first_task[number], entries)
         label = str(models.identity("routing_model"))
-        routes = RouteTable(models.routing, network, label)
+        routes = models.routes or RouteTable(models.routing, network, label)
         return cls(
             network,
             models,

@@ -3,18 +3,27 @@
 Clean rates are decided here, once, before any snapshot or route.
 """
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
-from ncsim_core.context import BuildContext
+from ncsim_core.context import BuildContext, ModelCache
 from ncsim_core.contracts.link_model import LinkModel
+from ncsim_core.contracts.routing_model import RouteTable, RoutingModel
 from ncsim_core.errors import PluginError
 from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkRates, Network
 from ncsim_core.registry import Registry, get_registry
 from ncsim_core.scenario.model import Scenario
+
+PURE: Final = "pure"
+"""Capability of a routing model whose routes runs may share, whatever their seeds and sections."""
+
+ROUTE_TABLES: Final = ModelCache(max_entries=8)
+"""Routes by network and model. Few, for those of a large network are many; the runs of a sweep
+that share a network follow one another."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,7 @@ def assemble(scenario: Scenario, registry: Registry | None = None) -> Assembly:
         new_queue=new_queue,
         dag_source=others["dag_source"][0],
         identities={**identities, "link_model": identity, "queue_model": queue_identity},
+        routes=_shared_routes(scenario, network, *others["routing_model"], registry),
     )
     return Assembly(network, models)
 
@@ -82,6 +92,28 @@ def _rated(scenario: Scenario, link_model: LinkModel, identity: ComponentIdentit
     if fault is not None:
         raise PluginError(f"{identity}: rate_links(): {fault}")
     return network.with_rates(rates)
+
+
+def _shared_routes(
+    scenario: Scenario,
+    network: Network,
+    model: RoutingModel,
+    identity: ComponentIdentity,
+    registry: Registry,
+) -> RouteTable | None:
+    """Return the routes of this network that runs of this process have in common.
+
+    ``None`` unless the model says that it neither draws nor remembers. The key is all that the
+    answers of a pure model follow from: nodes, links and their rates, who it is, its options.
+    """
+    if PURE not in registry.find("routing_model", identity.name).component.capabilities:
+        return None
+    who = (identity.distribution, identity.version, identity.name)
+    options = json.dumps(identity.options, sort_keys=True)
+    return ROUTE_TABLES.get_or_build(
+        (scenario.network.topology, network.rates, who, options),
+        lambda: RouteTable(model, network, str(identity)),
+    )
 
 
 def _build(

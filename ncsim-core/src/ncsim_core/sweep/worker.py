@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, NamedTuple
 
+from ncsim_core.engine.accompanying import accompanied
 from ncsim_core.engine.outcome import Outcome, RunStatus
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
@@ -130,11 +131,13 @@ def _set_alarm(limits: RunLimits) -> None:
 
 
 def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: float) -> ResultRow:
-    assembly = assemble(resolver.scenario(item.run))
+    scenario = resolver.scenario(item.run)
+    assembly = assemble(scenario)
     max_time_us = None if limits.max_time_s is None else us_from_s(limits.max_time_s)
     engine_limits = Limits(limits.max_events, max_time_us)
     simulation = Simulation(assembly.network, assembly.models, engine_limits)
-    outcome = _run(simulation, limits.wall_s)
+    with accompanied(simulation, scenario.name, scenario.config.seed):
+        outcome = _run(simulation, limits.wall_s)
     wall_s = time.perf_counter() - started_s
     if outcome is None:
         error = f"the wall limit of {limits.wall_s:g} s"

@@ -67,9 +67,11 @@ class Subject:
         model, _ = self.registry.build("link_model", radio, {}, context)
         return case.with_network(network.with_rates(cast("LinkModel", model).rate_links(network)))
 
-    def build(self, case: Case) -> object:
+    def build(self, case: Case, seed: int = 42) -> object:
         """Return the component, built anew for a settled case."""
-        context = make_context(case.network, sections=self.sections, injections=case.injections)
+        context = make_context(
+            case.network, seed=seed, sections=self.sections, injections=case.injections
+        )
         name = self.registered.qualified_name
         return self.registry.build(self.component.kind, name, self.options, context)[0]
 

@@ -1,6 +1,7 @@
 """Properties of routing models."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import cast
 
 from hypothesis.strategies import SearchStrategy
@@ -63,6 +64,18 @@ class RoutingModelSuite(ComponentSuite):
         for source in nodes:
             row = list(model.routes_from(source, case.network))
             assert row == [model.route(source, target, case.network) for target in nodes]
+
+    @check(capability="pure")
+    def check_pure_routes_follow_from_the_network(self, subject: Subject, case: Case) -> None:
+        """Seed and config sections change no route, so that runs may share them."""
+        bare = replace(subject, sections={})
+        one = cast("RoutingModel", subject.build(case, seed=1))
+        other = cast("RoutingModel", bare.build(case, seed=2))
+        nodes = range(len(case.network.nodes))
+        for source in nodes:
+            for target in nodes:
+                routes = [model.route(source, target, case.network) for model in (one, other)]
+                assert routes[0] == routes[1], _ends(case.network, source, target)
 
     @check(capability="objective")
     def check_routes_are_optimal(self, subject: Subject, case: Case) -> None:

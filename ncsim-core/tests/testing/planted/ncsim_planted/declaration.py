@@ -35,6 +35,7 @@ CLASSES = {
         "listing_order_changes_nothing": (),
         "routes_from_equals_route": (),
         "routes_are_optimal": ("objective=latency",),
+        "pure_routes_follow_from_the_network": ("pure",),
     },
     "link_model": {
         "every_link_is_rated": (),

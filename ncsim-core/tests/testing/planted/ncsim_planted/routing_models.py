@@ -39,3 +39,13 @@ class RoutesFromEqualsRoute(Hops):
 
 class RoutesAreOptimal(Hops):
     """Takes the fewest links where it declares the least latency."""
+
+
+class SeedlessRoutesIgnoreTheSeed(Hops):
+    """Draws whether there is a way, and says that it does not draw."""
+
+    def __init__(self, context):
+        self._is_lucky = context.rng("luck").random() < 0.5
+
+    def route(self, source, target, network):
+        return super().route(source, target, network) if self._is_lucky else None
