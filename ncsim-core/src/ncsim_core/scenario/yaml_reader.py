@@ -43,24 +43,28 @@ def read_yaml(text: str, *, with_positions: bool = False) -> Reading:
     """Return the document in a YAML text, with all that is wrong with the text itself."""
     import yaml
 
+    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        return _read(yaml.parse(text, Loader=loader), with_positions=with_positions)
+    except _TooDeepForLibyamlError:  # it looks ahead; the slower parser stops where we do
+        return _read(yaml.parse(text, Loader=yaml.SafeLoader), with_positions=with_positions)
+
+
+def _read(events: Iterator["yaml.Event"], *, with_positions: bool) -> Reading:
+    import yaml
+
     reader = _Reader(with_positions=with_positions)
     try:
-        for event in _events(text):
+        for event in events:
             reader.take(event)
     except _UnreadableError as unreadable:
         return Reading(None, [*reader.slips, unreadable.slip], reader.positions)
     except yaml.MarkedYAMLError as error:
+        if error.problem == "exceeded maximum nesting depth":
+            raise _TooDeepForLibyamlError from None
         slip = Slip((), _mark_span(error), f"not valid YAML: {_reason(error)}")
         return Reading(None, [*reader.slips, slip], reader.positions)
     return Reading(reader.root, reader.slips, reader.positions)
-
-
-def _events(text: str) -> Iterator["yaml.Event"]:
-    import yaml
-
-    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    events: Iterator[yaml.Event] = yaml.parse(text, Loader=loader)
-    return events
 
 
 def _mark_span(error: "yaml.MarkedYAMLError") -> Span:
@@ -71,6 +75,10 @@ def _mark_span(error: "yaml.MarkedYAMLError") -> Span:
 def _reason(error: "yaml.MarkedYAMLError") -> str:
     reasons = [error.context, error.problem, error.note]
     return ", ".join(reason for reason in reasons if reason)
+
+
+class _TooDeepForLibyamlError(Exception):
+    """Brackets nest deeper than libyaml (from 0.2.6 on) looks ahead, far beyond ``MAX_DEPTH``."""
 
 
 class _UnreadableError(Exception):
