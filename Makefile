@@ -15,7 +15,7 @@ SETUP_INPUTS := pyproject.toml constraints.txt ncsim-core/pyproject.toml $(PLUGI
 EDITABLE := -e ./ncsim-core[testing] $(PLUGINS:%=-e ./%)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run paper test check format schemas constraints clean
+.PHONY: help setup run paper test check format schemas viewer constraints clean
 
 help:  ## Show what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -68,6 +68,9 @@ format: $(DEV_STAMP)  ## Format and mend what can be mended
 
 schemas: $(DEV_STAMP)  ## Write schemas/ anew from the five packages
 	NCSIM_PLUGINS=ncsim-core,ncsim-wifi,ncsim-saga,ncsim-routing,ncsim-viz $(BIN)/ncsim schema --write schemas
+
+viewer:  ## Build the viewer from its source, after its own tests (needs Node 20 or newer)
+	cd ncsim-viz/frontend && npm ci --silent --no-audit --no-fund && npm run --silent generate && npm test --silent && npm run --silent build
 
 constraints:  ## Pin every dependency anew
 	$(BIN)/uv export --quiet --all-packages --all-extras --group dev --no-hashes --no-header \
