@@ -1,7 +1,7 @@
 from ncsim_core.plugins import Section
 from ncsim_wifi.declaration import ncsim_components, ncsim_sections
-from ncsim_wifi.phy.mcs import table_names
 from ncsim_wifi.radio import Radio
+from ncsim_wifi.tables import table_names
 
 
 def rf_section() -> Section:

@@ -7,8 +7,9 @@ from ncsim_core.testing.builders import make_context
 from ncsim_wifi.interference_models.csma_bianchi import csma_bianchi
 from ncsim_wifi.mac.efficiency import data_airtime_fraction
 from ncsim_wifi.mac.timing import AxTiming
+from ncsim_wifi.radio import Radio
 from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
-from ncsim_wifi.validation.scenes import parallel
+from ncsim_wifi.validation.scenes import parallel, single
 
 
 def model_of(network, **rf):
@@ -79,9 +80,21 @@ def test_a_bandwidth_that_is_no_rate_of_the_table_cannot_be_decoded_or_not():
         ({"rts_cts": True}, "rts_cts is on"),
     ],
 )
-def test_other_radios_are_refused(rf, told):
-    with pytest.raises(ModelScopeError, match=told):
-        model_of(parallel(2, 80.0).network(), **rf)
+def test_other_radios_are_refused_with_the_links_they_concern(rf, told):
+    model = model_of(parallel(2, 80.0).network(), **rf)
+
+    with pytest.raises(ModelScopeError, match=rf"{told}\), so .* links 'l0', 'l1'"):
+        model.factors([0, 1], [0, 1])
+
+
+@pytest.mark.parametrize("rf", [{"rts_cts": True}, {"channel_width_mhz": 80}])
+def test_a_run_with_another_radio_ends_as_failed_too(rf):
+    scene = replace(single(30.0), radio=Radio(**rf))
+
+    result = measure(scene, FIXED_CAPTURE).result
+
+    assert (result.status, result.makespan_s) == ("failed", None)
+    assert "'l0'" in result.detail
 
 
 def test_the_engine_ends_a_run_beyond_its_scope_as_failed():

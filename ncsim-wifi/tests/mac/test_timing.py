@@ -1,4 +1,7 @@
+import math
+
 import pytest
+from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming, FhssTiming, data_frame_us
 
 
@@ -27,3 +30,8 @@ def test_bianchis_own_durations_add_up():
 
     assert timing.success_us(1.0) == 400 + 8184 + 1 + 28 + 240 + 1 + 128
     assert timing.collision_us(1.0) == 400 + 8184 + 128 + 1
+
+
+def test_a_rate_next_to_nothing_never_ends_a_frame_and_delivers_nothing():
+    assert data_frame_us(5e-324) == math.inf
+    assert station_goodput_MBps(1, 5e-324, AxTiming()) == 0.0

@@ -21,3 +21,9 @@ def test_distances_are_symmetric_with_a_zero_diagonal():
     apart_m = distances_m(np.array([[0.0, 0.0], [3.0, 4.0], [0.0, 8.0]]))
 
     assert apart_m.tolist() == [[0.0, 5.0, 8.0], [5.0, 0.0, 5.0], [8.0, 5.0, 0.0]]
+
+
+def test_places_too_far_apart_for_numbers_hear_nothing_of_each_other():
+    apart_m = distances_m(np.array([[-1e308, 0.0], [1e308, 0.0]]))
+
+    assert path_loss_dB(apart_m, 46.0, 3.0)[0, 1] == np.inf

@@ -13,7 +13,7 @@ from ncsim_core.plugins import KINDS
 from ncsim_core.registry import Registry
 from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
 from ncsim_core.scenario.model import Config
-from ncsim_core.scenario.resolution import RADIO
+from ncsim_core.scenario.resolution import NEEDS_RADIO, RADIO
 from ncsim_core.scenario.wording import did_you_mean
 
 Row: TypeAlias = Mapping[str, Any]
@@ -49,6 +49,7 @@ def dag_problems(scenario: Row) -> Iterator[Problem]:
 def config_problems(scenario: Row, config: Config, registry: Registry) -> Iterator[Problem]:
     """Yield what the chosen components miss in the rest of the scenario."""
     yield from _link_model_problems(scenario, config, registry)
+    yield from _position_problems(scenario, config, registry)
     dags = list(rows(scenario, ("scenario", "dags")))
     if config.components["scheduler"].name == "manual":
         yield from _unpinned(dags)
@@ -143,37 +144,43 @@ def _unpinned(dags: list[tuple[Path, Row]]) -> Iterator[Problem]:
 
 def _link_model_problems(scenario: Row, config: Config, registry: Registry) -> Iterator[Problem]:
     name = config.components["link_model"].name
-    bare = [
-        (path, link)
-        for path, link in rows(scenario, ("scenario", "network", "links"))
-        if "bandwidth" not in link
-    ]
-    if name == "static":
-        for path, _ in bare:
+    is_radio = RADIO in registry.find("link_model", name).component.capabilities
+    for path, link in rows(scenario, ("scenario", "network", "links")):
+        if "bandwidth" in link:
+            continue
+        if name == "static":
             message = (
                 "link model static needs a bandwidth, MB/s; give one, or choose a link_model that "
                 f"derives it from positions{_radio_models(registry)}"
             )
             yield Problem(path, message)
-    elif RADIO in registry.find("link_model", name).component.capabilities:
-        yield from _without_position(scenario, bare, name)
+        elif is_radio and link.get("medium") == "wired":
+            yield Problem(path, "a wired link needs a bandwidth, MB/s", shown(link.get("id")))
+
+
+def _position_problems(scenario: Row, config: Config, registry: Registry) -> Iterator[Problem]:
+    """Yield nodes without the position that a wireless link of theirs needs."""
+    radio, rival = (config.components[kind].name for kind in ("link_model", "interference_model"))
+    is_radio = RADIO in registry.find("link_model", radio).component.capabilities
+    is_heard = NEEDS_RADIO in registry.find("interference_model", rival).component.capabilities
+    needs: dict[str, str] = {}
+    for _, link in rows(scenario, ("scenario", "network", "links")):
+        ends, name = [str(link.get(end)) for end in ("to", "from")], link.get("id")
+        if link.get("medium") == "wired":
+            continue
+        if is_radio and "bandwidth" not in link:
+            remedy = "give that link a bandwidth, MB/s" + ", and medium: wired" * is_heard
+            need = f"link model {radio} derives the rate of link {name!r} from it; or {remedy}"
+            needs |= dict.fromkeys(ends, need)
+        elif is_heard:
+            need = f"interference {rival} derives from it what link {name!r} hears; or mark that "
+            needs |= dict.fromkeys(ends, need + "link medium: wired")
+    for path, node in rows(scenario, ("scenario", "network", "nodes")):
+        if "position" not in node and node.get("id") in needs:
+            yield Problem(path, f"node {node['id']!r} needs a position: {needs[node['id']]}")
 
 
 def _radio_models(registry: Registry) -> str:
     models = registry.components("link_model")
     names = [each.component.name for each in models if RADIO in each.component.capabilities]
     return f" ({', '.join(names)})" if names else ""
-
-
-def _without_position(
-    scenario: Row, bare: list[tuple[Path, Row]], link_model: str
-) -> Iterator[Problem]:
-    """Yield nodes without position at the ends of links whose rate must come from it."""
-    need = {str(link.get(end)): link.get("id") for _, link in bare for end in ("to", "from")}
-    for path, node in rows(scenario, ("scenario", "network", "nodes")):
-        if "position" not in node and node.get("id") in need:
-            message = (
-                f"node {node['id']!r} needs a position: link model {link_model} derives the rate "
-                f"of link {need[node['id']]!r} from it; or give that link a bandwidth, MB/s"
-            )
-            yield Problem(path, message)

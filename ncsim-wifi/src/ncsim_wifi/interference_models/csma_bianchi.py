@@ -37,7 +37,6 @@ def csma_bianchi(
 
     Raises:
         ScenarioError: Wireless links lack positions; all of them are named.
-        ModelScopeError: ``fixed_capture`` does not cover these radio parameters.
     """
     radio = Radio.from_section(context.section("rf"))
     options = Options(hidden_model, components, outage_floor_factor)

@@ -21,6 +21,7 @@ from ncsim_wifi.radio import Radio, REFERENCE_CHANNEL_WIDTH_mhz
 from ncsim_wifi.shares import Shares
 
 MAX_LINKS_NAMED = 10
+REMEDY = "Use hidden_model: effective_rate"
 
 
 def capture_success(airtime_fraction: float, sinr_dB: float, decode_threshold_dB: float) -> float:
@@ -39,26 +40,22 @@ def capture_success(airtime_fraction: float, sinr_dB: float, decode_threshold_dB
     return 1.0 if sinr_dB >= decode_threshold_dB else 1.0 - airtime_fraction
 
 
-def check_radio_is_covered(radio: Radio) -> None:
-    """Check that fixed capture covers a radio.
+def uncovered_parameters(radio: Radio) -> list[str]:
+    """Return what keeps fixed capture from covering a radio, in words; nothing if it does.
 
-    Source: SPEC 6.
+    Source: SPEC 6: 802.11ax at 20 MHz without RTS/CTS.
 
-    Raises:
-        ModelScopeError: It is not 802.11ax at 20 MHz without RTS/CTS.
+    >>> uncovered_parameters(Radio(rts_cts=True))
+    ['rf.rts_cts is on']
     """
     faults = []
     if radio.wifi_standard != "ax":
-        faults.append(f"rf.wifi_standard is {radio.wifi_standard!r}, not 'ax'")
+        faults.append(f"rf.wifi_standard is {radio.wifi_standard!r}")
     if radio.channel_width_mhz != REFERENCE_CHANNEL_WIDTH_mhz:
-        faults.append(f"rf.channel_width_mhz is {radio.channel_width_mhz}, not 20")
+        faults.append(f"rf.channel_width_mhz is {radio.channel_width_mhz}")
     if radio.rts_cts:
         faults.append("rf.rts_cts is on")
-    if faults:
-        raise ModelScopeError(
-            "hidden_model fixed_capture covers 802.11ax at 20 MHz without RTS/CTS only: "
-            + "; ".join(faults)
-        )
+    return faults
 
 
 @dataclass(frozen=True)
@@ -72,8 +69,9 @@ class Rivals:
 class FixedCaptureModel(InterferenceModel):
     """Keeps the clean rate and loses the frames that a hidden interferer overlaps.
 
-    Covers at most one hidden interferer per receiver and no sensed contender beside it. Pure
-    contention follows the default rule.
+    Covers 802.11ax at 20 MHz without RTS/CTS, with at most one hidden interferer per receiver
+    and no sensed contender beside it; asked about anything else, it raises ``ModelScopeError``
+    with the links in question. Pure contention follows the default rule.
 
     Source: Section VI-C (``sec:ns3_validation``); SPEC 6.
 
@@ -83,9 +81,6 @@ class FixedCaptureModel(InterferenceModel):
         signals: Powers and clean rates.
         radio: Radio parameters.
         shares: Factors by rates and number of stations.
-
-    Raises:
-        ModelScopeError: The radio is not covered.
     """
 
     def __init__(
@@ -96,7 +91,6 @@ class FixedCaptureModel(InterferenceModel):
         radio: Radio,
         shares: Shares,
     ) -> None:
-        check_radio_is_covered(radio)
         self._names = [link.id for link in links]
         self._related = related
         self._signals = signals
@@ -174,6 +168,12 @@ class FixedCaptureModel(InterferenceModel):
         )
 
     def _check_scope(self, rivals: dict[LinkIndex, Rivals]) -> None:
+        if rivals and (faults := uncovered_parameters(self._radio)):
+            raise ModelScopeError(
+                "hidden_model fixed_capture covers 802.11ax at 20 MHz without RTS/CTS only "
+                f"({', '.join(faults)}), so it cannot serve links {self._named(list(rivals))}. "
+                + REMEDY
+            )
         beyond = [
             f"{self._names[link]!r} (contenders: {self._named(rival.contenders)}; "
             f"hidden interferers: {self._named(rival.interferers)})"
@@ -183,11 +183,10 @@ class FixedCaptureModel(InterferenceModel):
         if beyond:
             raise ModelScopeError(
                 "hidden_model fixed_capture covers one hidden interferer per receiver and no "
-                f"contender beside it; beyond that are links {', '.join(beyond)}. "
-                "Use hidden_model: effective_rate"
+                f"contender beside it; beyond that are links {', '.join(beyond)}. " + REMEDY
             )
 
-    def _named(self, links: list[LinkIndex]) -> str:
+    def _named(self, links: Sequence[LinkIndex]) -> str:
         shown = ", ".join(repr(str(self._names[link])) for link in links[:MAX_LINKS_NAMED])
         more = len(links) - MAX_LINKS_NAMED
         return (shown or "none") + (f" and {more} more" if more > 0 else "")

@@ -53,8 +53,10 @@ def data_frame_us(rate_Mbps: float) -> float:
     >>> round(data_frame_us(68.8), 1)
     234.4
     """
-    symbols = math.ceil((PSDU_bits + SERVICE_AND_TAIL_bits) / (SYMBOL_us * rate_Mbps))
-    return PREAMBLE_us + SYMBOL_us * symbols
+    symbols = (PSDU_bits + SERVICE_AND_TAIL_bits) / (SYMBOL_us * rate_Mbps)
+    if symbols == math.inf:  # a rate so small that no number says how long the frame is
+        return math.inf
+    return PREAMBLE_us + SYMBOL_us * math.ceil(symbols)
 
 
 @dataclass(frozen=True)

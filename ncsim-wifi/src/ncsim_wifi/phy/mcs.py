@@ -2,10 +2,10 @@
 
 import csv
 import difflib
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from itertools import pairwise
 
 import numpy as np
@@ -13,8 +13,9 @@ from ncsim_core.errors import ScenarioError
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.radio import Radio
+from ncsim_wifi.tables import table_file, table_names
 
-TABLES = files("ncsim_wifi") / "tables"
+COLUMNS = ["mcs", "snr_min_dB", "rate_Mbps"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class RateTable:
     def __post_init__(self) -> None:
         for column in (self.snr_min_dB, self.rate_Mbps):
             if not column or any(b <= a for a, b in pairwise(column)):
-                raise ScenarioError(f"a rate table must increase strictly, not {column!r}")
+                raise ScenarioError(f"rates and thresholds must increase strictly, not {column!r}")
 
     def scaled(self, factor: float) -> "RateTable":
         """Return the table of a channel ``factor`` times as wide (SPEC 2)."""
@@ -43,13 +44,6 @@ class RateTable:
         return int(np.searchsorted(self.snr_min_dB, snr_dB, side="right")) - 1
 
 
-def table_names() -> list[str]:
-    """Return the names of all rate tables: one CSV file each, and nothing else to do."""
-    return sorted(
-        entry.name.removesuffix(".csv") for entry in TABLES.iterdir() if entry.name.endswith(".csv")
-    )
-
-
 @cache
 def read_table(standard: str) -> RateTable:
     """Return the 20 MHz table of a standard.
@@ -57,7 +51,7 @@ def read_table(standard: str) -> RateTable:
     Source: Table ``tab:mcs_parameters`` (ax); SPEC 2 (n, ac).
 
     Raises:
-        ScenarioError: There is no such table.
+        ScenarioError: There is no such table, or it is no table.
     """
     names = table_names()
     if standard not in names:
@@ -66,16 +60,40 @@ def read_table(standard: str) -> RateTable:
         raise ScenarioError(
             f"rf.wifi_standard: no rate table {standard!r}; there are {', '.join(names)}{hint}"
         )
-    return parse_table((TABLES / f"{standard}.csv").read_text("utf-8").splitlines())
+    file = table_file(standard)
+    return parse_table(file.read_text("utf-8").splitlines(), str(file))
 
 
-def parse_table(lines: Iterable[str]) -> RateTable:
-    """Return the table of CSV lines with the columns ``mcs,snr_min_dB,rate_Mbps``."""
-    rows = list(csv.DictReader(lines))
-    return RateTable(
-        tuple(float(row["snr_min_dB"]) for row in rows),
-        tuple(float(row["rate_Mbps"]) for row in rows),
-    )
+def parse_table(lines: Iterable[str], name: str = "rate table") -> RateTable:
+    """Return the table of CSV lines that begin with ``mcs,snr_min_dB,rate_Mbps``.
+
+    Args:
+        lines: One scheme each; empty ones count for nothing.
+        name: What messages call the table.
+
+    Raises:
+        ScenarioError: The columns are others, a number is none, or rates do not increase.
+    """
+    reader = csv.reader(lines, skipinitialspace=True)
+    header = next(reader, [])
+    if [cell.strip() for cell in header] != COLUMNS:
+        raise ScenarioError(f"{name}:1  must begin with {','.join(COLUMNS)}, not {header!r}")
+    rows = [_numbers(cells, f"{name}:{reader.line_num}") for cells in reader if cells]
+    try:
+        return RateTable(tuple(snr_dB for snr_dB, _ in rows), tuple(rate for _, rate in rows))
+    except ScenarioError as error:
+        raise ScenarioError(f"{name}  {error}") from None
+
+
+def _numbers(cells: list[str], where: str) -> tuple[float, float]:
+    """Return threshold and rate of one line."""
+    try:
+        _, snr_dB, rate_Mbps = map(float, cells)
+    except ValueError:
+        raise ScenarioError(f"{where}  must be three numbers, not {', '.join(cells)!r}") from None
+    if not (math.isfinite(snr_dB) and 0.0 < rate_Mbps < math.inf):
+        raise ScenarioError(f"{where}  needs a finite threshold and a rate above 0, not {cells!r}")
+    return snr_dB, rate_Mbps
 
 
 def rate_table(radio: Radio) -> RateTable:

@@ -40,6 +40,10 @@ def path_loss_dB(distance_m: Quantity, reference_loss_dB: float, exponent: float
 
 
 def distances_m(positions_m: FloatArray) -> FloatArray:
-    """Return the distance between any two of ``positions_m``, from shape (n, 2) to (n, n)."""
+    """Return the distance between any two of ``positions_m``, from shape (n, 2) to (n, n).
+
+    Infinite if it has no number.
+    """
     x_m, y_m = positions_m[:, 0], positions_m[:, 1]
-    return np.hypot(x_m[:, None] - x_m[None, :], y_m[:, None] - y_m[None, :])
+    with np.errstate(over="ignore"):
+        return np.hypot(x_m[:, None] - x_m[None, :], y_m[:, None] - y_m[None, :])

@@ -4,8 +4,9 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from ncsim_wifi.tables import table_names
+
 _HERE = Path(__file__).parent
-_TABLES = _HERE.parent / "tables"
 
 
 def rf_schema() -> Mapping[str, object]:
@@ -13,6 +14,5 @@ def rf_schema() -> Mapping[str, object]:
     schema: dict[str, dict[str, dict[str, object]]] = json.loads(
         (_HERE / "rf.json").read_text("utf-8")
     )
-    standards = sorted(path.stem for path in _TABLES.glob("*.csv"))
-    schema["properties"]["wifi_standard"]["enum"] = standards
+    schema["properties"]["wifi_standard"]["enum"] = table_names()
     return schema
