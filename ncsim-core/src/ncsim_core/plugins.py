@@ -109,7 +109,8 @@ class Component:
             checked from metadata.
         capabilities: Claims that choose defaults and conformance checks. ``radio``: a
             link model that derives rates from positions. ``needs_radio``: an interference
-            model that wants such a link model. ``monotone``, ``scale_invariant``,
+            model that wants such a link model. ``decides_routes``: one that, with some of
+            its options, gives whole routes their rates. ``monotone``, ``scale_invariant``,
             ``objective=hops|latency|bottleneck``, ``order=fifo|lifo|shortest|longest``:
             extra properties to be tested. ``single_hop``: a routing model that only ever
             takes one link. ``pure``: a routing model whose answers follow from network

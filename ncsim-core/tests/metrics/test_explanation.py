@@ -10,8 +10,8 @@ from ncsim_core.engine.simulation import Simulation
 from ncsim_core.metrics.explanation import explain_run
 from ncsim_core.metrics.losses import LOSSES, Part, divide
 from ncsim_core.network import Link, LinkRates, Network, Node
-from ncsim_core.testing.builders import inject, make_context
-from ncsim_core.testing.toys import ToyRadio, models
+from ncsim_core.testing.builders import chain, inject, line, make_context, rated
+from ncsim_core.testing.toys import ToyRadio, ToyRelays, models
 from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.recorder import RunRecorder
@@ -101,6 +101,20 @@ def test_injection_and_latency_have_their_own_parts():
     }
 
 
+def test_relaying_that_costs_a_lone_transfer_time_is_contention_loss():
+    network = rated(line(3, bandwidth_MBps=2.0))
+    dag = chain(2, size_MB=4.0, cost=0.0, pins={0: 0, 1: 2})
+    chosen = models(
+        network,
+        [inject(dag)],
+        scheduler=ManualScheduler(make_context(network)),
+        interference=ToyRelays(network),
+    )
+
+    totals = explained(lambda *observers: Simulation(network, chosen, observers=observers)).totals
+    assert seconds(totals) == {"transfer_alone": 2.0, "contention_loss": 2.0}
+
+
 def test_a_coarse_recording_says_that_it_does_not_know():
     totals = explained(worked_example, level="coarse").totals
 
@@ -108,7 +122,7 @@ def test_a_coarse_recording_says_that_it_does_not_know():
 
 
 @settings(max_examples=60, deadline=None)
-@given(run_cases())
+@given(run_cases() | run_cases(decides_routes=True))
 def test_the_parts_of_every_completed_run_sum_to_its_makespan(case):
     recorder = RunRecorder()
     outcome = case.simulation(recorder).run()

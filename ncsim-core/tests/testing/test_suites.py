@@ -21,7 +21,7 @@ NUMBER_OF_CHECKS = {
     "scheduler": 14,
     "routing_model": 17,
     "link_model": 13,
-    "interference_model": 21,
+    "interference_model": 27,
     "queue_model": 14,
     "dag_source": 13,
 }
@@ -68,6 +68,24 @@ def test_nothing_is_planted_for_no_check(planted):
     ]
 
     assert sorted(components) == sorted(ALL_CHECKS)
+
+
+def test_a_good_model_of_routes_passes_every_check(fake_dist):
+    code = (
+        "from ncsim_core.testing.toys import ToyRelays\n"
+        "def make(context):\n    return ToyRelays(context.network)\n"
+    )
+    declaration = declaring(
+        '"interference_model", "relays", "relay_code:make", "Relays.",'
+        ' capabilities=frozenset({"decides_routes"})'
+    )
+    fake_dist("relay-dist", {"relay_declaration": declaration, "relay_code": code})
+
+    results = check_component("interference_model", "relays")
+    assert [each for each in results if each.is_bad] == []
+    assert {each.check for each in results if each.status == "skipped"} == {
+        "one_more_link_never_helps"
+    }
 
 
 def test_failure_shows_a_small_falsifying_example(planted):

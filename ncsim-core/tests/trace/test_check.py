@@ -12,7 +12,11 @@ from ncsim_core.trace.writer import TraceWriter
 
 
 @settings(max_examples=40, deadline=None)
-@given(run_cases(), st.sampled_from(["full", "coarse"]), st.none() | st.integers(0, 40))
+@given(
+    run_cases() | run_cases(decides_routes=True),
+    st.sampled_from(["full", "coarse"]),
+    st.none() | st.integers(0, 40),
+)
 def test_every_trace_of_the_engine_passes(tmp_path_factory, case, level, max_events):
     path = tmp_path_factory.mktemp("run") / "t.jsonl"
     outcome = case.simulation(
@@ -52,7 +56,7 @@ def without(path, *numbers):
         (9, {"size": 4.5}, "transfer 'A' -> 'C' carries 4.5 MB, its edge 4.0"),
         (9, {"route": [0]}, "its route does not lead to its task's node"),
         (9, {"route": [1, 0]}, "its route breaks at link 'bc'"),
-        (10, {"r": [2.5]}, "2.5 MB/s is more than its share 2.0 of 'ab'"),
+        (10, {"r": [2.5]}, "link 'ab' carries 2.5 MB/s, more than its 2.0"),
         (10, {"r": [1.9]}, "transfer 'A' -> 'C' was served 3.9 MB of 4.0"),
         (
             10,

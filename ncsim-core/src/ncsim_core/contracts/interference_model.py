@@ -6,15 +6,19 @@ first, and the conformance kit proves them equal.
 * Plain, the easiest: ``factors`` and ``reach``, pure functions of their arguments.
 * Incremental: ``open_session`` returns an object that the engine owns for one run and tells
   which links were switched on and off.
+
+In both, a transfer gets the least share on its route, each link shared equally. A model that knows
+better what a whole route carries, because relays forward only what they receive, sets
+``decides_routes`` and answers ``route_rates`` instead.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from typing_extensions import override
 
-from ncsim_core.network import LinkIndex
+from ncsim_core.network import LinkIndex, Route
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,8 +39,26 @@ class Competition(NamedTuple):
     hidden_factor: float = 1.0
 
 
+class RouteRates(NamedTuple):
+    """What transfers get on their routes.
+
+    Args:
+        rates_MBps: Rate of each route, shape ``(routes,)``; 0 pauses a transfer.
+        bottlenecks: For each route, the link on it that decides.
+    """
+
+    rates_MBps: "NDArray[np.float64]"
+    bottlenecks: Sequence[LinkIndex]
+
+
 class InterferenceModel(ABC):
-    """Gives each active link a factor in [0, 1] that multiplies its clean bandwidth."""
+    """Gives each active link a factor in [0, 1] that multiplies its clean bandwidth.
+
+    Attributes:
+        decides_routes: Whether the engine asks for the rates of whole routes instead.
+    """
+
+    decides_routes: ClassVar[bool] = False
 
     @abstractmethod
     def factors(
@@ -58,6 +80,25 @@ class InterferenceModel(ABC):
         The engine asks again only for these, so leaving one out makes results wrong; naming
         too many only costs time. The changed links themselves belong to the answer.
         """
+
+    def route_rates(self, routes: Sequence[Route]) -> RouteRates:
+        """Return what the transfers on ``routes``, all that are under way, get now.
+
+        Asked at every start and finish of a transfer, and only if ``decides_routes``. The answer
+        depends on the routes alone and not on the order in which they are listed, rounding
+        apart; the engine always sorts them, so that equal routes give equal answers to the last
+        bit. A route that occurs twice stands for two transfers, which get the same.
+
+        No rate is above the least clean bandwidth of its route, and no link carries more than
+        its clean bandwidth; a route of one link that is alone gets just that.
+
+        Args:
+            routes: Routes of one link or more, ascending as tuples.
+
+        Raises:
+            ModelScopeError: The model does not cover these routes.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no route_rates()")
 
     def competition(
         self, links: Sequence[LinkIndex], active: Collection[LinkIndex]

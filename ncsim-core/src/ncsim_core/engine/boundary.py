@@ -9,17 +9,20 @@ from typing import TypeVar
 
 from typing_extensions import override
 
-from ncsim_core.contracts.interference_model import Competition, InterferenceSession
+from ncsim_core.contracts.interference_model import Competition, InterferenceSession, RouteRates
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.scheduler import NetworkSnapshot
 from ncsim_core.errors import NcsimError, PlacementError, PluginError
 from ncsim_core.models import ComponentIdentity, Models
-from ncsim_core.network import LinkIndex, NodeId, NodeIndex
+from ncsim_core.network import LinkIndex, Network, NodeId, NodeIndex, Route
 from ncsim_core.workflow import DAG, Injection, PlacementPlan
 
 T = TypeVar("T")
 
 MAX_NAMES_SHOWN = 10
+
+RATE_TOLERANCE = 1e-9
+"""Part of its clean bandwidth that a link may seem to carry beyond it, by rounding."""
 
 
 def asked(identity: ComponentIdentity, question: Callable[[], T]) -> T:
@@ -111,6 +114,58 @@ class CheckedSession(InterferenceSession):
     @override
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
         return asked(self._who, lambda: self._session.competition(links))
+
+
+def checked_route_rates(
+    models: Models, routes: Sequence[Route], network: Network
+) -> list[tuple[float, LinkIndex]]:
+    """Return rate in MB/s and bottleneck of each route, as the interference model decides.
+
+    Raises:
+        PluginError: A rate is no ordinary number or above what links carry, or a bottleneck is
+            not on its route.
+    """
+    who = models.identity("interference_model")
+    answers = asked(who, lambda: _route_answers(models.interference.route_rates(routes)))
+    fault = route_rates_fault(routes, *answers, network)
+    if fault is not None:
+        raise PluginError(f"{who} {fault}")
+    return list(zip(*answers, strict=True))
+
+
+def route_rates_fault(
+    routes: Sequence[Route],
+    rates_MBps: Sequence[float],
+    bottlenecks: Sequence[LinkIndex],
+    network: Network,
+) -> str | None:
+    """Return what is wrong with the rates of routes, ``None`` if nothing is.
+
+    Each rate is finite and 0 or more, each bottleneck is on its route, and no link carries more
+    than its clean bandwidth, so that no route does either.
+    """
+    if not len(routes) == len(rates_MBps) == len(bottlenecks):
+        counts = f"{len(rates_MBps)} rates and {len(bottlenecks)} bottlenecks"
+        return f"gave {counts} for {len(routes)} routes"
+    carried_MBps: dict[LinkIndex, float] = {}
+    for route, rate_MBps, bottleneck in zip(routes, rates_MBps, bottlenecks, strict=True):
+        if not (math.isfinite(rate_MBps) and rate_MBps >= 0.0):
+            return f"gave route {list(route)} the rate {rate_MBps!r} MB/s"
+        if bottleneck not in route:
+            return f"gave route {list(route)} the bottleneck {bottleneck!r}, which is not on it"
+        for link in route:
+            carried_MBps[link] = carried_MBps.get(link, 0.0) + rate_MBps
+    for link, total_MBps in carried_MBps.items():
+        clean_MBps = network.bandwidth_MBps[link]
+        if total_MBps > clean_MBps * (1 + RATE_TOLERANCE):
+            name = network.links[link].id
+            return f"lets link {name!r} of {clean_MBps!r} MB/s carry {total_MBps!r} MB/s"
+    return None
+
+
+def _route_answers(rates: RouteRates) -> tuple[list[float], list[LinkIndex]]:
+    rates_MBps, bottlenecks = rates
+    return [float(each) for each in rates_MBps], [int(each) for each in bottlenecks]
 
 
 class CheckedQueue:

@@ -150,7 +150,7 @@ class Simulation:
         state = self.state
         if state.unfinished_tasks == 0:
             self._end(RunStatus.COMPLETED, "")
-        elif any(link.flows for link in state.links):
+        elif state.flows:
             self._end(RunStatus.BLOCKED_WIRELESS, _blocked_detail(state, self.setup))
         else:
             raise EngineError(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ncsim_core.contracts.interference_model import InterferenceSession, PlainSession
 from ncsim_core.engine.boundary import CheckedQueue, CheckedSession, asked
 from ncsim_core.engine.event_queue import EventQueue
+from ncsim_core.engine.links_in_use import LinksInUse
 from ncsim_core.engine.setup import DependencyEntry, Reach, Setup, TaskEntry
 
 if TYPE_CHECKING:
@@ -124,6 +125,7 @@ class State:
     Args:
         tasks: All tasks by number.
         transfers: Transfers created so far, by number of their dependency.
+        flows: Those that occupy their route, in order of their start.
         nodes: All nodes by index.
         links: All links by index.
         interference: The model's session of this run.
@@ -140,6 +142,7 @@ class State:
 
     tasks: list[TaskRun]
     transfers: dict[int, Transfer]
+    flows: dict[int, Transfer]
     nodes: list[NodeState]
     links: list[LinkState]
     interference: InterferenceSession
@@ -163,6 +166,7 @@ class State:
         return cls(
             tasks=[TaskRun(entry, entry.incoming_count) for entry in setup.tasks],
             transfers={},
+            flows={},
             nodes=[
                 NodeState(CheckedQueue(asked(who_queues, models.new_queue), who_queues))
                 for _ in setup.network.nodes
@@ -175,6 +179,8 @@ class State:
 
 
 def _session(setup: Setup) -> InterferenceSession:
+    if setup.models.interference.decides_routes:
+        return LinksInUse(setup.models.interference)
     if setup.reach is Reach.GLOBAL:
         return PlainSession(setup.models.interference, is_global=True)
     return setup.models.interference.open_session()

@@ -6,7 +6,9 @@ bottleneck link, r = B g h / k: k flows share it (sharing), hidden interferers l
 (hidden), and carrier-sense contention the rest g of the link's factor (contention). The loss
 is divided among the three in proportion to ln k, -ln g and -ln h: the only division in which the
 order of the causes does not matter and halving the rate twice by one cause weighs twice. At zero
-rate, the cause whose factor is zero takes the whole loss.
+rate, the cause whose factor is zero takes the whole loss. Under a model that decides the rates of
+whole routes, r need not be an equal share of the bottleneck: what k and h leave unexplained counts
+as contention, the hops of one transfer that contend with each other among it.
 
 Whole microseconds: the time alone is size / b rounded up as the engine rounds; the rest is divided
 among the causes in proportion to their losses by largest remainder, ties in the order sharing,

@@ -4,7 +4,7 @@ Free of hypothesis and pytest, because a child process asks the same questions u
 hash seed.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, cast
 
@@ -14,9 +14,10 @@ from ncsim_core.contracts.link_model import LinkModel
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.routing_model import RoutingModel
 from ncsim_core.contracts.scheduler import Scheduler
-from ncsim_core.network import LinkId, LinkIndex, Network
+from ncsim_core.network import LinkId, LinkIndex, Network, Route
 from ncsim_core.testing import builders
 from ncsim_core.testing.builders import make_snapshot
+from ncsim_core.testing.oracle import FewestHops
 from ncsim_core.workflow import DAG, DagId, Injection, TaskId
 
 Answer: TypeAlias = object
@@ -31,6 +32,7 @@ class Case:
         dag: For schedulers: what to place.
         active: For interference models: links in use.
         toggles: For interference models: links to switch on or off, one after another.
+        routes: For interference models that decide routes: routes in use, ascending.
         waiting: For queue models: tasks to push; ``None`` stands for a pop.
         injections: For DAG sources: what the scenario lists.
     """
@@ -39,8 +41,17 @@ class Case:
     dag: DAG | None = None
     active: tuple[LinkIndex, ...] = ()
     toggles: tuple[LinkIndex, ...] = ()
+    routes: tuple[Route, ...] = ()
     waiting: tuple[WaitingTask | None, ...] = ()
     injections: tuple[Injection, ...] = ()
+
+    @property
+    def usable_routes(self) -> tuple[Route, ...]:
+        """Return the routes whose links all have bandwidth; for networks with rates."""
+        bandwidth_MBps = self.network.bandwidth_MBps
+        return tuple(
+            route for route in self.routes if all(bandwidth_MBps[link] > 0 for link in route)
+        )
 
     def with_network(self, network: Network) -> "Case":
         """Return the same question about another network."""
@@ -68,13 +79,24 @@ def ask_link_model(component: object, case: Case) -> Answer:
 
 
 def ask_interference_model(component: object, case: Case) -> Answer:
-    """Return factors, reach and competition of the active links."""
+    """Return factors, reach and competition of the active links, and the rates of routes."""
     model = cast("InterferenceModel", component)
     return (
         [float(each) for each in model.factors(case.active, case.active)],
         sorted(model.reach(case.active)),
         [tuple(each) for each in model.competition(case.active, case.active)],
+        route_answers(model, case.usable_routes) if model.decides_routes else [],
     )
+
+
+def route_answers(
+    model: InterferenceModel, routes: Sequence[Route]
+) -> list[tuple[float, LinkIndex]]:
+    """Return rate in MB/s and bottleneck of each route."""
+    if not routes:
+        return []
+    rates_MBps, bottlenecks = model.route_rates(routes)
+    return list(zip(map(float, rates_MBps), map(int, bottlenecks), strict=True))
 
 
 def ask_queue_model(component: object, case: Case) -> Answer:
@@ -120,7 +142,10 @@ def fixed_cases(kind: str) -> list[Case]:
     if kind == "queue_model":
         return [Case(networks[0], waiting=tuple(_tasks_in_mixed_order()))]
     if kind == "interference_model":
-        return [Case(each, active=tuple(range(0, len(each.links), 2))) for each in networks]
+        return [
+            Case(each, active=tuple(range(0, len(each.links), 2)), routes=_routes(each))
+            for each in networks
+        ]
     if kind == "scheduler":
         pins = {k: k % 4 for k in range(6)}
         return [
@@ -129,6 +154,15 @@ def fixed_cases(kind: str) -> list[Case]:
             Case(networks[0], dag=builders.chain(3, cost=150.0)),
         ]
     return [Case(each) for each in networks]
+
+
+def _routes(network: Network) -> tuple[Route, ...]:
+    """Return some of the shortest routes, the last of them twice."""
+    last = len(network.nodes) - 1
+    ends = [(a, b) for a in (0, 1) for b in (last, 2, 0) if a != b]
+    found = [FewestHops().route(a, b, network) for a, b in ends]
+    routes = [route for route in found if route]
+    return tuple(sorted([*routes, *routes[-1:]]))
 
 
 def _with_parallel_links(network: Network) -> Network:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from ncsim_core.contracts.queue_model import WaitingTask
-from ncsim_core.network import Network, Node, NodeId
+from ncsim_core.network import LinkIndex, Network, Node, NodeId, Route
 from ncsim_core.testing.drawing import (
     COSTS,
     SIZES_MB,
@@ -38,6 +38,8 @@ __all__ = [
     "options_for",
     "questions_about",
     "radios",
+    "relayed_runs",
+    "relayed_traffic",
     "runs",
     "sections",
     "traffic",
@@ -82,6 +84,61 @@ def traffic(*, max_nodes: int = 6, max_links: int = 10) -> SearchStrategy[Case]:
         st.lists(number, max_size=max_links),
         st.lists(number, max_size=16),
     )
+
+
+@cache
+def relayed_traffic(*, max_routes: int = 6) -> SearchStrategy[Case]:
+    """Return a network with routes in use, of one link to four, some of them twice."""
+
+    def case(network: Network, codes: list[int]) -> Case:
+        routes = [route for code in codes if (route := _walk(network, Digits(code)))]
+        return Case(network, routes=tuple(sorted(routes)))
+
+    drawn = networks(max_nodes=6, max_links=14, is_bandwidth_optional=True)
+    return made(case, drawn, drawn_codes(1, max_routes))
+
+
+@cache
+def relayed_runs(*, max_transfers: int = 6) -> SearchStrategy[Case]:
+    """Return runs in which several transfers are under way at once, over one link or more."""
+
+    def case(network: Network, codes: list[int]) -> Case:
+        dag = _transfers(network, [(Digits(code), Digits(code // 97)) for code in codes])
+        return Case(network, injections=(Injection(0, dag),))
+
+    return made(case, networks(max_nodes=6, max_links=14), drawn_codes(1, max_transfers))
+
+
+def _walk(network: Network, digits: Digits) -> Route:
+    """Return a route that visits no node twice, from any node."""
+    visited = [digits.pick(range(len(network.nodes)))]
+    route: list[LinkIndex] = []
+    for _ in range(1 + digits.pick(range(4))):
+        onward = [
+            link
+            for link in network.outgoing[visited[-1]]
+            if network.targets[link] not in visited and network.links[link].bandwidth_MBps != 0
+        ]
+        if not onward:
+            break
+        route.append(digits.pick(onward))
+        visited.append(network.targets[route[-1]])
+    return tuple(route)
+
+
+def _transfers(network: Network, choices: list[tuple[Digits, Digits]]) -> DAG:
+    """Return a DAG of lone transfers between the ends of routes."""
+    tasks, edges = [Task(TaskId("alone"), 0.0)], []
+    for number, (digits, others) in enumerate(choices):
+        route = _walk(network, digits)
+        if not route:
+            continue
+        source, target = TaskId(f"a{number}"), TaskId(f"b{number}")
+        cost = others.pick(COSTS)
+        tasks.append(Task(source, cost, network.links[route[0]].source))
+        tasks.append(Task(target, 0.0, network.links[route[-1]].target))
+        edges.append(Dependency(source, target, others.pick(SIZES_MB)))
+    return DAG(DagId("d"), tuple(tasks), tuple(edges))
 
 
 @cache

@@ -1,5 +1,6 @@
 """Small components for tests of the engine: plain, deterministic, with every hard case."""
 
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -11,12 +12,12 @@ from ncsim_core.builtin.interference_models import NoInterference
 from ncsim_core.builtin.link_models import StaticLinkModel
 from ncsim_core.builtin.queue_models import FifoQueue
 from ncsim_core.builtin.schedulers import RoundRobinScheduler
-from ncsim_core.contracts.interference_model import Competition, InterferenceModel
+from ncsim_core.contracts.interference_model import Competition, InterferenceModel, RouteRates
 from ncsim_core.contracts.queue_model import QueueModel
 from ncsim_core.contracts.routing_model import RoutingModel
 from ncsim_core.contracts.scheduler import Scheduler
 from ncsim_core.models import Models
-from ncsim_core.network import LinkIndex, Network
+from ncsim_core.network import LinkIndex, Network, Route
 from ncsim_core.testing.builders import make_context
 from ncsim_core.testing.oracle import FewestHops
 from ncsim_core.workflow import Injection
@@ -74,6 +75,67 @@ class ToyRadio(InterferenceModel):
         contenders = others.intersection(self._neighbours.get(link, ()))
         hidden = others.intersection(self._hidden.get(link, ())) - contenders
         return Competition(len(contenders), len(hidden), 0.75 ** len(hidden))
+
+
+class ToyRelays(InterferenceModel):
+    """Max-min fair rates of whole routes; relaying halves what a route can get.
+
+    Args:
+        network: A network whose rates are decided.
+        stop_at: Number of transfers on one link from which all transfers stop.
+    """
+
+    decides_routes = True
+
+    def __init__(self, network: Network, *, stop_at: int = 99) -> None:
+        self._bandwidth_MBps = network.bandwidth_MBps
+        self._stop_at = stop_at
+
+    @override
+    def factors(
+        self, links: Sequence[LinkIndex], active: Collection[LinkIndex]
+    ) -> "NDArray[np.float64]":
+        import numpy as np
+
+        return np.ones(len(links))
+
+    @override
+    def reach(self, changed: Collection[LinkIndex]) -> Collection[LinkIndex]:
+        return changed
+
+    @override
+    def route_rates(self, routes: Sequence[Route]) -> RouteRates:
+        import numpy as np
+
+        on_link = Counter(link for route in routes for link in route)
+        left_MBps = {link: self._bandwidth_MBps[link] for link in on_link}
+        waiting = sorted(range(len(routes)), key=routes.__getitem__)
+        rates_MBps, bottlenecks = np.zeros(len(routes)), [-1] * len(routes)
+        while waiting:  # the route that can get least goes first, and keeps what it gets
+            offers = [self._offer(routes[k], left_MBps, on_link) for k in waiting]
+            (rate_MBps, link), number = min(zip(offers, waiting, strict=True))
+            waiting.remove(number)
+            rates_MBps[number], bottlenecks[number] = rate_MBps, link
+            for each in routes[number]:
+                left_MBps[each] -= rate_MBps
+                on_link[each] -= 1
+        if self._is_stopped(routes):
+            rates_MBps[:] = 0.0
+        return RouteRates(rates_MBps, bottlenecks)
+
+    def _offer(
+        self, route: Route, left_MBps: Mapping[LinkIndex, float], on_link: Mapping[LinkIndex, int]
+    ) -> tuple[float, LinkIndex]:
+        """Return the most that a route can get now, and the link that sets it."""
+        relays = min(2, len(route))
+        return min(
+            (min(left_MBps[link] / on_link[link], self._bandwidth_MBps[link] / relays), link)
+            for link in route
+        )
+
+    def _is_stopped(self, routes: Sequence[Route]) -> bool:
+        counts = Counter(link for route in routes for link in route)
+        return max(counts.values(), default=0) >= self._stop_at
 
 
 def models(

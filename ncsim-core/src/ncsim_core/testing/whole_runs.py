@@ -14,7 +14,7 @@ from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.setup import Limits, Reach
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.network import Link, LinkId, LinkRates, Network, Node, NodeId
-from ncsim_core.testing.toys import ToyRadio, models
+from ncsim_core.testing.toys import ToyRadio, ToyRelays, models
 from ncsim_core.workflow import DAG, DagId, Dependency, Injection, Task, TaskId
 
 CAPACITIES = (50.0, 100.0, 300.0)
@@ -47,14 +47,22 @@ class RunCase:
 
 
 @st.composite
-def run_cases(draw: DrawFn, *, max_nodes: int = 6, max_tasks: int = 9) -> RunCase:
-    """Return runs on strongly connected networks; most complete, some end blocked."""
+def run_cases(
+    draw: DrawFn, *, max_nodes: int = 6, max_tasks: int = 9, decides_routes: bool = False
+) -> RunCase:
+    """Return runs on strongly connected networks; most complete, some end blocked.
+
+    With ``decides_routes``, under a model that gives whole routes their rates.
+    """
     network = draw(_connected_networks(max_nodes))
     later_us = draw(st.lists(st.sampled_from(TIMES_us), max_size=2))
     injections = tuple(
         Injection(at_us, draw(_pinned_dags(f"d{number}", len(network.nodes), max_tasks)))
         for number, at_us in enumerate(sorted([0, *later_us]))
     )
+    if decides_routes:
+        relays = ToyRelays(network, stop_at=draw(st.sampled_from([2, 3, 4, 99])))
+        return RunCase(network, injections, relays)
     return RunCase(network, injections, draw(_radios(len(network.links))))
 
 

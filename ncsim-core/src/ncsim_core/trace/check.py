@@ -3,7 +3,7 @@
 Checked: time never decreases; a task is placed, ready, started and ended once and in this order,
 on its node, alone there, for the rounded cost over capacity, as soon as its last input arrived; a
 transfer follows its producer's end and latency on a chain of links between its tasks' nodes; the
-integral of its rates is its size; no rate exceeds its bottleneck's share; each rate change has its
+integral of its rates is its size; no link carries more than its bandwidth; each rate change has its
 cause; the ``done`` record counts right and closes a run with nothing left.
 """
 

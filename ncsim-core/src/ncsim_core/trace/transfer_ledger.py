@@ -22,7 +22,7 @@ RELATIVE_TOLERANCE: Final = 1e-6
 """Of a transfer's size: what adding up its service may be off."""
 
 RATE_TOLERANCE: Final = 1e-9
-"""Of a link's share: what a rate may be off."""
+"""Of a link's bandwidth: what the sum of rates may be off."""
 
 
 @dataclass
@@ -54,7 +54,7 @@ class TransferLedger:
         self._has_rates = preamble.level == "full"
         self._tasks = tasks
         self._find = find
-        self._flows = [0] * len(preamble.links)
+        self._flows: list[dict[int, None]] = [{} for _ in preamble.links]
         self._outgoing: dict[int, list[int]] = {}
         self._latest: tuple[str, int, int] | None = None
         self.entries: list[TransferEntry] = []
@@ -84,7 +84,7 @@ class TransferLedger:
         self._expect_producer_and_latency(entry, record, name)
         self._expect_route(entry, record.route, name)
         entry.route, entry.started_us, entry.credited_us = record.route, record.at_us, record.at_us
-        self._occupy(entry, 1)
+        self._occupy(record.transfer)
         self._latest = ("s", record.transfer, record.at_us)
 
     def assign(self, record: RatesAssigned) -> None:
@@ -101,8 +101,9 @@ class TransferLedger:
                 self._find(f"transfer {self._name(transfer)} gets a rate while it is not served")
                 continue
             self._credit(entry, record.at_us)
-            self._expect_share(entry, step, self._name(transfer))
+            self._expect_bottleneck(entry, step, self._name(transfer))
             entry.rate_MBps = step.rate_MBps
+        self._expect_links_keep_up(record.transfers)
 
     def end(self, record: TransferEnded) -> None:
         """Check and enter that a transfer has been served, to the last byte and no more."""
@@ -116,7 +117,7 @@ class TransferLedger:
             if abs(entry.served_MB - entry.size_MB) > tick_MB + RELATIVE_TOLERANCE * entry.size_MB:
                 self._find(f"transfer {name} was served {entry.served_MB} MB of {entry.size_MB}")
         entry.ended_us = record.at_us
-        self._occupy(entry, -1)
+        self._release(record.transfer)
         self._tasks.arrive(entry.target, record.at_us)
         self._latest = ("e", record.transfer, record.at_us)
 
@@ -149,20 +150,25 @@ class TransferLedger:
         if at != self._tasks.entries[entry.target].node:
             self._find(f"transfer {name}: its route does not lead to its task's node")
 
-    def _expect_share(self, entry: TransferEntry, step: RateStep, name: str) -> None:
+    def _expect_bottleneck(self, entry: TransferEntry, step: RateStep, name: str) -> None:
         link = self._links[step.bottleneck]
         if step.bottleneck not in entry.route:
             self._find(f"transfer {name}: bottleneck {link.id!r} is not on its route")
             return
-        flows = self._flows[step.bottleneck]
+        flows = len(self._flows[step.bottleneck])
         if step.flows != flows:
             self._find(f"transfer {name}: {step.flows} flows on {link.id!r} instead of {flows}")
-        most_MBps = link.bandwidth_MBps / max(1, step.flows)
-        if step.rate_MBps > most_MBps * (1 + RATE_TOLERANCE):
-            self._find(
-                f"transfer {name}: {step.rate_MBps} MB/s is more than its share {most_MBps} of "
-                f"{link.id!r}"
-            )
+
+    def _expect_links_keep_up(self, transfers: Sequence[int]) -> None:
+        """Check that no link on the routes of these carries more than its bandwidth."""
+        for index in sorted({link for number in transfers for link in self.entries[number].route}):
+            link = self._links[index]
+            carried_MBps = math.fsum(self.entries[each].rate_MBps for each in self._flows[index])
+            if carried_MBps > link.bandwidth_MBps * (1 + RATE_TOLERANCE):
+                self._find(
+                    f"link {link.id!r} carries {carried_MBps} MB/s, more than its "
+                    f"{link.bandwidth_MBps}"
+                )
 
     def _credit(self, entry: TransferEntry, at_us: int) -> None:
         elapsed_us = at_us - entry.credited_us
@@ -170,10 +176,14 @@ class TransferLedger:
             entry.served_MB += entry.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
         entry.credited_us = at_us
 
-    def _occupy(self, entry: TransferEntry, change: int) -> None:
-        if entry.size_MB > 0:  # nothing to serve: it never occupies its route
-            for link in entry.route:
-                self._flows[link] += change
+    def _occupy(self, number: int) -> None:
+        if self.entries[number].size_MB > 0:  # nothing to serve: it never occupies its route
+            for link in self.entries[number].route:
+                self._flows[link][number] = None
+
+    def _release(self, number: int) -> None:
+        for link in self.entries[number].route:
+            self._flows[link].pop(number, None)
 
     def _is_local(self, entry: TransferEntry) -> bool:
         tasks = self._tasks.entries

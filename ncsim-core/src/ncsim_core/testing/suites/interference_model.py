@@ -19,9 +19,10 @@ from ncsim_core.testing.questions import Case
 from ncsim_core.testing.runs import run_with
 from ncsim_core.testing.subject import Subject
 from ncsim_core.testing.suites.base import ComponentSuite
+from ncsim_core.testing.suites.route_rates import RouteRateChecks
 
 
-class InterferenceModelSuite(ComponentSuite):
+class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
     """Checks of an interference model. Equal means equal: to the last bit."""
 
     kind = "interference_model"
@@ -32,7 +33,12 @@ class InterferenceModelSuite(ComponentSuite):
 
     @override
     def strategies(self) -> Mapping[str, SearchStrategy[object]]:
-        return {**super().strategies(), "run": strategies.busy_runs()}
+        return {
+            **super().strategies(),
+            "run": strategies.busy_runs(),
+            "relayed": strategies.relayed_traffic(),
+            "relayed_run": strategies.relayed_runs(),
+        }
 
     @check()
     def check_factors_are_shares(self, subject: Subject, case: Case) -> None:

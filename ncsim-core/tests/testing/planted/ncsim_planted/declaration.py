@@ -54,6 +54,12 @@ CLASSES = {
         "sessions_do_not_meet": (),
         "competition_can_be_explained": (),
         "one_more_link_never_helps": ("monotone",),
+        "deciding_routes_is_declared": (),
+        "route_rates_fit_their_links": ("decides_routes",),
+        "alone_a_route_keeps_its_bandwidth": ("decides_routes",),
+        "order_of_routes_changes_nothing": ("decides_routes",),
+        "route_rates_have_no_memory": ("decides_routes",),
+        "moving_few_routes_equals_moving_all": ("decides_routes",),
     },
     "queue_model": {
         "nothing_is_lost_or_invented": (),

@@ -5,7 +5,9 @@ from ncsim_core.contracts.interference_model import (
     Competition,
     InterferenceModel,
     PlainSession,
+    RouteRates,
 )
+from ncsim_core.testing.toys import ToyRelays
 
 
 class TakeTurns(InterferenceModel):
@@ -93,3 +95,59 @@ class OneMoreLinkNeverHelps(TakeTurns):
     def factors(self, links, active):
         counts = [self.contenders(link, active) for link in links]
         return np.array([0.5 if count == 1 else 1.0 for count in counts])
+
+
+class Relays(ToyRelays):
+    """A good model of routes, but for what is planted in it."""
+
+    def __init__(self, context):
+        super().__init__(context.network)
+
+    def route_rates(self, routes):
+        rates_MBps, bottlenecks = super().route_rates(routes)
+        return RouteRates(self.spoilt(rates_MBps, routes), bottlenecks)
+
+
+class DecidingRoutesIsDeclared(Relays):
+    def spoilt(self, rates_MBps, routes):
+        return rates_MBps
+
+
+class RouteRatesFitTheirLinks(Relays):
+    def spoilt(self, rates_MBps, routes):
+        return rates_MBps * len(routes)
+
+
+class AloneARouteKeepsItsBandwidth(Relays):
+    def spoilt(self, rates_MBps, routes):
+        return 0.9 * rates_MBps
+
+
+class OrderOfRoutesChangesNothing(Relays):
+    def spoilt(self, rates_MBps, routes):
+        return rates_MBps / np.arange(1, len(routes) + 1)
+
+
+class RouteRatesHaveNoMemory(Relays):
+    """Starts from the answer before, as an iteration does."""
+
+    before_MBps = np.zeros(0)
+
+    def spoilt(self, rates_MBps, routes):
+        nudged_MBps = rates_MBps * (1 - 1e-12 * (len(self.before_MBps) % 2))
+        self.before_MBps = rates_MBps
+        return nudged_MBps
+
+
+class MovingFewRoutesEqualsMovingAll(Relays):
+    """Models of one process know of each other."""
+
+    built = 0
+
+    def __init__(self, context):
+        super().__init__(context)
+        MovingFewRoutesEqualsMovingAll.built += 1
+        self.part = 1 / MovingFewRoutesEqualsMovingAll.built
+
+    def spoilt(self, rates_MBps, routes):
+        return self.part * rates_MBps
