@@ -3,7 +3,7 @@ import io
 
 import pytest
 from ncsim_core.errors import ScenarioError
-from ncsim_core.sweep.report import paired, policies, policy_totals, summary
+from ncsim_core.sweep.report import paired, policies, policy_cases, policy_totals, summary
 from ncsim_core.sweep.table import MEASURES, Table
 
 
@@ -14,7 +14,7 @@ def runs(rows):
         (s, i, seed, "failed" if m is None else "completed", m, *([None] * (len(MEASURES) - 2)))
         for s, i, seed, m in rows
     ]
-    return Table(columns, tuple(filled), "study")
+    return Table(columns, tuple(filled), "study", heads=3)
 
 
 INVERSION = runs(
@@ -84,13 +84,102 @@ def test_csv_keeps_full_precision_and_leaves_gaps_empty():
 
 
 def test_latex_is_booktabs_with_special_characters_escaped():
-    text = Table(("a_b", "c"), ((1, "x%"),)).to_latex()
+    text = Table(("a_b", "c"), ((1, "x%"), (None, r"{\~^#$&}")), "50% of\nit").to_latex()
 
-    assert r"a\_b & c \\" in text
-    assert r"1 & x\% \\" in text
-    assert text.startswith(r"\begin{tabular}{rl}")
-    assert r"\toprule" in text
+    assert text.splitlines() == [
+        "% 50% of it",
+        r"\begin{tabular}{rl}",
+        r"\toprule",
+        r"a\_b & c \\",
+        r"\midrule",
+        r"1 & x\% \\",
+        r"-- & \{\textbackslash{}\textasciitilde{}\textasciicircum{}\#\$\&\} \\",
+        r"\bottomrule",
+        r"\end{tabular}",
+    ]
 
 
-def test_markdown_has_a_rule_below_its_head():
-    assert Table(("a", "b"), ((1, None),)).to_markdown() == "| a | b |\n| --- | --- |\n| 1 | - |"
+def test_markdown_has_numbers_to_the_right_and_keeps_bars_in_their_cell():
+    text = Table(("a", "b|c"), ((1.0, "x|y"),), "what").to_markdown()
+
+    assert text == "**what**\n\n| a | b\\|c |\n| ---: | --- |\n| 1.000 | x\\|y |"
+
+
+def test_measured_numbers_of_a_column_have_equally_many_digits_and_parameters_none_too_many():
+    table = Table(("load", "mean"), ((0.5, 10.182), (2.0, 9.47843), (1, 1e-6)), heads=1)
+
+    assert table.to_markdown(digits=2).splitlines()[2:] == [
+        "| 0.5 | 10.18 |",
+        "| 2 | 9.48 |",
+        "| 1 | 1e-06 |",
+    ]
+
+
+def test_cases_are_taken_over_seeds():
+    rows = [
+        (policy, mode, seed, makespan)
+        for seed, heft, cpop in ((1, 12.0, 8.0), (2, 8.0, 8.0), (3, 8.0, None))
+        for policy, mode, makespan in (
+            ("heft", "none", 3.0),
+            ("cpop", "none", 4.0),
+            ("heft", "csma_bianchi", heft),
+            ("cpop", "csma_bianchi", cpop),
+        )
+    ]
+    record = policy_cases(policies(runs(rows), "scheduler", "interference")).to_dicts()[0]
+
+    assert (record["cases"], record["inversions"], record["left_out"]) == (3, 1, 0)
+    assert record["mean_regret"] == pytest.approx(0.5 / 3)
+    assert (record["median_regret"], record["largest_regret"]) == (0.0, 0.5)
+    assert record["mean_slowdown"] == pytest.approx((4 + 8 / 3 + 8 / 3) / 3)
+
+
+def test_pairs_that_a_condition_leaves_out_have_no_row():
+    rows = [("heft", "none", 1, 3.0), ("cpop", "none", 1, 4.0), ("heft", "csma_bianchi", 1, 5.0)]
+
+    assert [row[0] for row in paired(runs(rows), "scheduler").rows] == ["none"]
+
+
+@pytest.mark.parametrize("make", [summary, lambda r, m: paired(r, "scheduler", m)])
+def test_what_is_no_measure_is_refused_with_a_suggestion(make):
+    with pytest.raises(ScenarioError, match="did you mean 'makespan_s'"):
+        make(INVERSION, "makespans")
+
+
+MIXED = Table(
+    ("scheduler", "load", "option", "note"),
+    (
+        ("heft", 1, {"type": "fcp", "options": {"k": 2}}, None),
+        ("cpop", 2.5, "heft", None),
+    ),
+)
+
+
+def test_columns_are_of_one_type():
+    columns = MIXED.to_columns()
+
+    assert columns["load"] == [1.0, 2.5]
+    assert columns["option"] == ['{"options":{"k":2},"type":"fcp"}', "heft"]
+
+
+def test_pandas_takes_a_table():
+    pandas = pytest.importorskip("pandas")
+    frame = MIXED.to_pandas()
+
+    assert frame["load"].dtype == "float64"
+    assert frame.equals(pandas.DataFrame(MIXED.to_columns()))
+
+
+def test_polars_takes_a_table():
+    polars = pytest.importorskip("polars")
+    frame = polars.DataFrame(MIXED.to_columns())
+
+    assert frame["load"].to_list() == [1.0, 2.5]
+
+
+def test_parquet_holds_what_the_table_holds(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    INVERSION.write_parquet(tmp_path / "new" / "runs.parquet")
+    back = parquet.read_table(tmp_path / "new" / "runs.parquet").to_pylist()
+
+    assert back == INVERSION.to_dicts()

@@ -19,6 +19,8 @@ class ReportTable(StrEnum):
     SUMMARY = "summary"
     RUNS = "runs"
     POLICIES = "policies"
+    CASES = "cases"
+    TOTALS = "totals"
     PAIRED = "paired"
 
 
@@ -39,22 +41,37 @@ def report(  # noqa: PLR0913 - one parameter per option
         ReportTable,
         typer.Option(
             "--table",
-            help="summary: means with intervals over seeds; runs: every run; policies: winners, "
-            "inversions and regret; paired: differences along one column.",
+            help="summary: means with intervals over seeds; runs: every run; policies: ratios, "
+            "winners, inversion and regret of every case; cases: the same over seeds; totals: "
+            "over everything; paired: differences along one column.",
         ),
     ] = ReportTable.SUMMARY,
-    measure: Annotated[str, typer.Option(help="What is averaged.")] = "makespan_s",
-    policy: Annotated[str, typer.Option(help="Column of the policies.")] = "scheduler",
-    mode: Annotated[str, typer.Option(help="Column that tells Solo from Full.")] = "interference",
+    measure: Annotated[
+        str, typer.Option(help="What is averaged: makespan_s, wall_s, route_work_MB_hops, ...")
+    ] = "makespan_s",
+    policy: Annotated[
+        str, typer.Option(help="Column of the policies to choose from.")
+    ] = "scheduler",
+    mode: Annotated[
+        str, typer.Option(help="Column that tells Solo (none) from Full.")
+    ] = "interference",
     along: Annotated[str | None, typer.Option(help="Column of --table paired.")] = None,
-    form: Annotated[ReportFormat, typer.Option("--format", "-f")] = ReportFormat.TERMINAL,
+    confidence: Annotated[
+        float, typer.Option(min=0.5, max=0.9999, help="Of the intervals.")
+    ] = 0.95,
+    digits: Annotated[
+        int, typer.Option(min=0, max=12, help="After the point; CSV and Parquet keep all.")
+    ] = 3,
+    form: Annotated[
+        ReportFormat, typer.Option("--format", "-f", help="How it is written.")
+    ] = ReportFormat.TERMINAL,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File to write.")] = None,
 ) -> None:
     """Print a table of a study.
 
-    Example: ncsim report study/ --table policies --format latex
+    Example: ncsim report study/ --table cases --format latex
     """
-    from ncsim_core.sweep.report import paired, policies, policy_totals, summary
+    from ncsim_core.sweep.report import paired, policies, policy_cases, policy_totals, summary
     from ncsim_core.sweep.store import Store
     from ncsim_core.sweep.table import table_of
 
@@ -62,41 +79,49 @@ def report(  # noqa: PLR0913 - one parameter per option
         runs = table_of(store)
     match show:
         case ReportTable.RUNS:
-            tables = [runs]
+            table = runs
         case ReportTable.SUMMARY:
-            tables = [summary(runs, measure)]
+            table = summary(runs, measure, confidence)
         case ReportTable.PAIRED:
-            tables = [paired(runs, along or policy, measure)]
+            table = paired(runs, along or policy, measure, confidence)
         case ReportTable.POLICIES:
-            matrix = policies(runs, policy, mode)
-            tables = [matrix, policy_totals(matrix)]
-    _put(tables, form, output)
+            table = policies(runs, policy, mode)
+        case ReportTable.CASES:
+            table = policy_cases(policies(runs, policy, mode), confidence)
+        case ReportTable.TOTALS:
+            table = policy_totals(policies(runs, policy, mode))
+    _put(table, form, digits, output)
 
 
-def _put(tables: "list[Table]", form: ReportFormat, output: Path | None) -> None:
+def _put(table: "Table", form: ReportFormat, digits: int, output: Path | None) -> None:
     if form is ReportFormat.PARQUET:
         if output is None:
             raise ScenarioError("Parquet is no text; give --output FILE")
-        tables[0].write_parquet(output)
+        table.write_parquet(output)
         return
-    text = "\n\n".join(_text(each, form) for each in tables).rstrip("\n") + "\n"
+    text = _text(table, form, digits).rstrip("\n") + "\n"
     if output is None:
         typer.echo(text, nl=False)
     else:
+        output.parent.mkdir(parents=True, exist_ok=True)
         output.write_text(text, encoding="utf-8")
 
 
-def _text(table: "Table", form: ReportFormat) -> str:
+def _text(table: "Table", form: ReportFormat, digits: int) -> str:
     if form is ReportFormat.MARKDOWN:
-        return table.to_markdown()
+        return table.to_markdown(digits)
     if form is ReportFormat.LATEX:
-        return table.to_latex()
+        return table.to_latex(digits)
     if form is ReportFormat.CSV:
         return table.to_csv()
-    from ncsim_core.sweep.table import shown_value
+    return terminal_text(table, digits)
 
-    kept = (int, float)
-    rows = [
-        [v if isinstance(v, kept) or v is None else shown_value(v) for v in r] for r in table.rows
-    ]
-    return f"{table.title}\n{aligned(rows, table.columns)}"
+
+def terminal_text(table: "Table", digits: int = 3) -> str:
+    """Return a table as people read it in a terminal, its title above it."""
+    from ncsim_core.sweep.formatting import cells
+
+    return (
+        f"{table.title}\n"
+        f"{aligned(cells(table.rows, table.heads, digits), table.columns, table.numeric)}"
+    )

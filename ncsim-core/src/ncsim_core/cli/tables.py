@@ -3,11 +3,19 @@
 from collections.abc import Sequence
 
 
-def aligned(rows: Sequence[Sequence[object]], header: Sequence[str]) -> str:
-    """Return rows as aligned columns; numbers to the right."""
+def aligned(
+    rows: Sequence[Sequence[object]], header: Sequence[str], is_number: Sequence[bool] | None = None
+) -> str:
+    """Return rows as aligned columns; numbers to the right.
+
+    Args:
+        rows: Values.
+        header: Names of the columns.
+        is_number: Which columns stand to the right; by default those that hold numbers alone.
+    """
     texts = [[_cell(value) for value in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(header, *texts, strict=True)]
-    is_number = [
+    is_number = is_number or [
         bool(rows) and all(isinstance(row[i], int | float) or row[i] is None for row in rows)
         for i in range(len(header))
     ]

@@ -3,7 +3,7 @@
 Runs that did not complete enter no mean; every table says how many there were.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from ncsim_core.errors import ScenarioError
@@ -18,25 +18,34 @@ from ncsim_core.metrics.statistics import (
     solo_choice,
     winner_set,
 )
+from ncsim_core.scenario.wording import did_you_mean
+from ncsim_core.sweep.formatting import shown_value
 from ncsim_core.sweep.plan import canonical
-from ncsim_core.sweep.table import MEASURES, Table, shown_value
+from ncsim_core.sweep.table import MEASURES, NUMBERS, Table
 from ncsim_core.sweep.where import spellings
 
 SOLO: Final = "none"
+FOUND: Final = ("solo_winners", "full_winners", "inversion", "regret", "slowdown")
 
 
 def summary(runs: Table, measure: str = "makespan_s", confidence: float = 0.95) -> Table:
-    """Return mean with Student-t interval and median over the seeds of each combination."""
+    """Return mean with Student-t interval and median over the seeds of each combination.
+
+    Raises:
+        ScenarioError: There is no such measure.
+    """
+    check_measure(measure)
     columns = parameters(runs)
     rows = []
-    for _, group in _grouped(runs, columns):
+    for group in grouped(runs.to_dicts(), columns):
         values = [record[measure] for record in group]
         interval, middle = mean_interval(values, confidence), median(values)
         head = [group[0][column] for column in columns]
         span = (interval.mean, interval.low, interval.high)
         rows.append((*head, *span, middle.median, interval.count, interval.left_out))
     names = (f"mean_{measure}", "low", "high", f"median_{measure}", "runs", "left_out")
-    return Table((*columns, *names), tuple(rows), f"{runs.title}: {measure}, {confidence:.0%}")
+    title = f"{runs.title}: {measure}, {confidence:.0%} intervals over seeds"
+    return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 
 def policies(runs: Table, policy: str, mode: str, solo: str = SOLO) -> Table:
@@ -55,14 +64,11 @@ def policies(runs: Table, policy: str, mode: str, solo: str = SOLO) -> Table:
         ScenarioError: A column is not varied, or ``mode`` has other values than these two.
     """
     policy, mode = column_of(runs, policy), column_of(runs, mode)
-    names = _values(runs, policy)
-    modes = _values(runs, mode)
-    if len(modes) != 2 or solo not in modes:  # noqa: PLR2004 - Solo and Full
-        raise ScenarioError(f"{mode!r} needs two values, one of them {solo!r}; it has {modes}")
-    full = next(each for each in modes if each != solo)
+    names = values_of(runs, policy)
+    full = full_mode(runs, mode, solo)
     columns = [*(each for each in parameters(runs) if each not in (policy, mode)), "seed"]
     rows = []
-    for _, group in _grouped(runs, columns):
+    for group in grouped(runs.to_dicts(), columns):
         makespans = {(shown_value(r[mode]), shown_value(r[policy])): r["makespan_s"] for r in group}
         solo_s = {name: makespans.get((solo, name)) for name in names}
         full_s = {name: makespans.get((full, name)) for name in names}
@@ -79,8 +85,36 @@ def policies(runs: Table, policy: str, mode: str, solo: str = SOLO) -> Table:
                 slowdown(full_s[choice], solo_s[choice]) if choice else None,
             )
         )
-    found = ("solo_winners", "full_winners", "inversion", "regret", "slowdown")
-    return Table((*columns, *names, *found), tuple(rows), f"{runs.title}: {policy} by {mode}")
+    title = f"{runs.title}: {policy}, {full} over the best; chosen by {solo}"
+    return Table((*columns, *names, *FOUND), tuple(rows), title, heads=len(columns))
+
+
+def policy_cases(matrix: Table, confidence: float = 0.95) -> Table:
+    """Return a ``policies`` table over its seeds: inversions, regret, slowdown of the choice."""
+    columns = list(matrix.columns[: matrix.heads - 1])
+    rows = []
+    for group in grouped(matrix.to_dicts(), columns):
+        regrets = [each["regret"] for each in group]
+        mean, slow = (
+            mean_interval([each[name] for each in group], confidence)
+            for name in ("regret", "slowdown")
+        )
+        rows.append(
+            (
+                *(group[0][column] for column in columns),
+                len(group),
+                sum(each["inversion"] is True for each in group),
+                *(mean.mean, mean.low, mean.high),
+                *(median(regrets).median, _largest(regrets)),
+                *(slow.mean, slow.low, slow.high, mean.left_out),
+            )
+        )
+    names = (
+        *("cases", "inversions", "mean_regret", "regret_low", "regret_high", "median_regret"),
+        *("largest_regret", "mean_slowdown", "slowdown_low", "slowdown_high", "left_out"),
+    )
+    title = f"{matrix.title}, {confidence:.0%} intervals over seeds"
+    return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 
 def policy_totals(matrix: Table) -> Table:
@@ -97,36 +131,36 @@ def policy_totals(matrix: Table) -> Table:
         ("mean regret, low", interval.low),
         ("mean regret, high", interval.high),
         ("median regret", median(regrets).median),
-        ("maximum regret", max((each for each in regrets if each is not None), default=None)),
+        ("maximum regret", _largest(regrets)),
         ("left out", interval.left_out),
     ]
-    return Table(("what", "value"), tuple(rows), f"{matrix.title}, totals")
+    return Table(("what", "value"), tuple(rows), f"{matrix.title}, totals", heads=1)
 
 
-def paired(runs: Table, axis: str, measure: str = "makespan_s") -> Table:
+def paired(runs: Table, axis: str, measure: str = "makespan_s", confidence: float = 0.95) -> Table:
     """Return differences to the first value of a column, seed by seed, with intervals.
 
     Raises:
-        ScenarioError: The column is not varied.
+        ScenarioError: The column is not varied, or there is no such measure.
     """
+    check_measure(measure)
     axis = column_of(runs, axis)
-    first, *others = _values(runs, axis)
+    first, *others = values_of(runs, axis)
     columns = [each for each in parameters(runs) if each != axis]
     rows = []
-    for _, group in _grouped(runs, columns):
+    for group in grouped(runs.to_dicts(), columns):
         found = {(shown_value(r[axis]), r["seed"]): r[measure] for r in group}
-        seeds = list(dict.fromkeys(r["seed"] for r in group))
         for other in others:
-            one, two = ([found.get((name, seed)) for seed in seeds] for name in (first, other))
-            interval = mean_interval(paired_differences(one, two))
+            seeds = [s for name, s in found if name == other and (first, s) in found]
+            one, two = ([found[name, seed] for seed in seeds] for name in (first, other))
+            mean = mean_interval(paired_differences(one, two), confidence)
             head = [group[0][column] for column in columns]
-            rows.append((*head, f"{other} - {first}", *_interval_cells(interval)))
+            cells = (mean.mean, mean.low, mean.high, mean.count, mean.left_out)
+            if seeds:  # a condition may leave one of the two out
+                rows.append((*head, f"{other} - {first}", *cells))
     names = ("difference", f"mean_{measure}", "low", "high", "pairs", "left_out")
-    return Table((*columns, *names), tuple(rows), f"{runs.title}: {axis}, paired")
-
-
-def _interval_cells(interval: Any) -> tuple[Any, ...]:  # noqa: ANN401 - a MeanInterval
-    return (interval.mean, interval.low, interval.high, interval.count, interval.left_out)
+    title = f"{runs.title}: {axis}, paired by seed, {confidence:.0%} intervals"
+    return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 
 def parameters(runs: Table) -> list[str]:
@@ -142,19 +176,52 @@ def column_of(runs: Table, name: str) -> str:
     """
     names = spellings(parameters(runs))
     if name not in names:
-        raise ScenarioError(f"{name!r} is not varied; varied are {', '.join(parameters(runs))}")
+        varied = ", ".join(parameters(runs)) or "nothing but seeds"
+        raise ScenarioError(f"{name!r} is not varied in this study; varied: {varied}")
     return names[name]
 
 
-def _values(runs: Table, column: str) -> list[str]:
+def values_of(runs: Table, column: str) -> list[str]:
+    """Return the values of a column as text, in the order of the file."""
     index = runs.columns.index(column)
     return list(dict.fromkeys(shown_value(row[index]) for row in runs.rows))
 
 
-def _grouped(runs: Table, columns: Sequence[str]) -> Iterator[tuple[str, list[Mapping[str, Any]]]]:
-    """Yield the runs that agree in some columns, in the order of their first."""
+def grouped(
+    records: Iterable[Mapping[str, Any]], columns: Sequence[str]
+) -> list[list[Mapping[str, Any]]]:
+    """Return the records that agree in some columns, in the order of their first."""
     groups: dict[str, list[Mapping[str, Any]]] = {}
-    records: Iterable[Mapping[str, Any]] = runs.to_dicts()
     for record in records:
         groups.setdefault(canonical([record[each] for each in columns]), []).append(record)
-    yield from groups.items()
+    return list(groups.values())
+
+
+def check_measure(measure: str) -> None:
+    """Raise if something is no number that is kept of every run.
+
+    Raises:
+        ScenarioError: It is none.
+    """
+    if measure not in NUMBERS:
+        meant = did_you_mean(measure, NUMBERS)
+        hint = f"did you mean {meant!r}? " if meant else ""
+        raise ScenarioError(f"no measure {measure!r}; {hint}there are {', '.join(NUMBERS)}")
+
+
+def full_mode(runs: Table, mode: str, solo: str = SOLO) -> str:
+    """Return what stands for Full in a column of two values, one of them Solo.
+
+    Raises:
+        ScenarioError: It has other values.
+    """
+    modes = values_of(runs, mode)
+    if len(modes) != 2 or solo not in modes:  # noqa: PLR2004 - Solo and Full
+        raise ScenarioError(
+            f"{mode!r} needs two values, one of them {solo!r}; it has {', '.join(modes)}"
+        )
+    return next(each for each in modes if each != solo)
+
+
+def _largest(values: Sequence[float | None]) -> float | None:
+    return max((each for each in values if each is not None), default=None)

@@ -5,9 +5,16 @@ import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep.formatting import (
+    DIGITS,
+    cells,
+    escaped_for_latex,
+    escaped_for_markdown,
+    is_numeric,
+)
 from ncsim_core.sweep.plan import SweepPlan, canonical
 from ncsim_core.sweep.store import Store
 from ncsim_core.sweep.worker import ResultRow
@@ -16,10 +23,14 @@ from ncsim_core.units import s_from_us
 if TYPE_CHECKING:
     import pandas as pd
 
-MEASURES = (
+MEASURES: Final = (
     *("status", "makespan_s", "ended_s", "events", "transfers"),
     *("remote_MB", "route_work_MB_hops", "wall_s", "error"),
 )
+"""What is kept of every run."""
+
+NUMBERS: Final = tuple(each for each in MEASURES if each not in ("status", "error"))
+"""Those that can be averaged."""
 
 
 @dataclass(frozen=True)
@@ -30,19 +41,26 @@ class Table:
         columns: Names, the last word of each a unit where it has one.
         rows: Values; ``None`` where there is none.
         title: What it shows.
+        heads: How many columns, from the first, say what a row is about.
     """
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Any, ...], ...]
     title: str = ""
+    heads: int = 0
 
     def to_dicts(self) -> list[dict[str, Any]]:
         """Return one mapping per row."""
         return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 
     def to_columns(self) -> dict[str, list[Any]]:
-        """Return the values by column, as ``polars.DataFrame`` and ``pandas.DataFrame`` take it."""
-        return {name: [row[i] for row in self.rows] for i, name in enumerate(self.columns)}
+        """Return the values by column, each of one type.
+
+        ``polars.DataFrame``, ``pandas.DataFrame`` and ``pyarrow.table`` take it as it is.
+        """
+        return {
+            name: _of_one_type([row[i] for row in self.rows]) for i, name in enumerate(self.columns)
+        }
 
     def to_pandas(self) -> "pd.DataFrame":
         """Return a pandas DataFrame.
@@ -54,27 +72,40 @@ class Table:
 
         return pd.DataFrame(self.to_columns())
 
-    def to_markdown(self) -> str:
-        """Return a Markdown table."""
-        lines = [self.columns, ["---"] * len(self.columns), *map(_texts, self.rows)]
-        return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    def to_markdown(self, digits: int = DIGITS) -> str:
+        """Return a Markdown table, its title above it."""
+        head, *body = (
+            map(escaped_for_markdown, row)
+            for row in (self.columns, *cells(self.rows, self.heads, digits))
+        )
+        rule = ["---:" if is_right else "---" for is_right in self.numeric]
+        lines = [f"| {' | '.join(line)} |" for line in (head, rule, *body)]
+        return "\n".join([f"**{self.title}**", "", *lines] if self.title else lines)
 
-    def to_latex(self) -> str:
-        """Return a LaTeX table in the style of booktabs."""
-        marks = "".join("r" if _is_numeric(self.rows, i) else "l" for i in range(len(self.columns)))
-        lines = [" & ".join(map(_escaped, each)) + r" \\" for each in map(_texts, self.rows)]
-        head = " & ".join(map(_escaped, self.columns)) + r" \\"
+    def to_latex(self, digits: int = DIGITS) -> str:
+        """Return a LaTeX table in the style of booktabs, its title as a comment above it."""
+        marks = "".join("r" if is_right else "l" for is_right in self.numeric)
+        lines = [
+            " & ".join("--" if text == "-" else escaped_for_latex(text) for text in row) + r" \\"
+            for row in (self.columns, *cells(self.rows, self.heads, digits))
+        ]
         return "\n".join(
             [
+                *([f"% {' '.join(self.title.split())}"] if self.title else []),
                 f"\\begin{{tabular}}{{{marks}}}",
                 r"\toprule",
-                head,
+                lines[0],
                 r"\midrule",
-                *lines,
+                *lines[1:],
                 r"\bottomrule",
                 r"\end{tabular}",
             ]
         )
+
+    @property
+    def numeric(self) -> list[bool]:
+        """Return which columns are numbers, and so stand to the right."""
+        return [is_numeric(self.rows, index) for index in range(len(self.columns))]
 
     def to_csv(self) -> str:
         """Return comma-separated values; numbers at full precision, nothing for ``None``."""
@@ -95,8 +126,8 @@ class Table:
             import pyarrow.parquet as pq  # type: ignore[import-untyped,unused-ignore]
         except ImportError:
             raise ScenarioError("Parquet needs the package pyarrow: pip install pyarrow") from None
-        data = {name: [_plain(each) for each in v] for name, v in self.to_columns().items()}
-        pq.write_table(pa.table(data), path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        pq.write_table(pa.table(self.to_columns()), path)
 
 
 def record_of(
@@ -118,31 +149,23 @@ def table_of(store: Store) -> Table:
     plan, _ = store.current()
     columns = (*plan.columns, "seed", *MEASURES)
     rows = (tuple(record_of(plan, *each).values()) for each in store.rows())
-    return Table(columns, tuple(rows), plan.name)
-
-
-def shown_value(value: object) -> str:
-    """Return a value as a table shows it."""
-    if value is None:
-        return "-"
-    if isinstance(value, float):
-        return f"{value:.6g}" if abs(value) < 1 else f"{value:.4f}".rstrip("0").rstrip(".")
-    if isinstance(value, dict):
-        return str(value.get("type", canonical(value)))
-    return canonical(value) if isinstance(value, list) else str(value)
-
-
-def _texts(row: Sequence[Any]) -> list[str]:
-    return [shown_value(value) for value in row]
+    return Table(columns, tuple(rows), plan.name, heads=len(plan.columns) + 1)
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401 - plain data
-    return canonical(value) if isinstance(value, dict | list) else value
+    return canonical(value) if isinstance(value, dict | list | tuple) else value
 
 
-def _is_numeric(rows: Sequence[Sequence[Any]], column: int) -> bool:
-    return all(isinstance(row[column], int | float | None) for row in rows)
+def _of_one_type(values: Sequence[Any]) -> list[Any]:
+    """Return a column as one type.
 
-
-def _escaped(text: str) -> str:
-    return "".join(f"\\{each}" if each in "_%&#$" else each for each in text)
+    Lists and mappings become JSON, whole numbers beside others fractions, and everything text
+    where numbers and text meet.
+    """
+    plain = [_plain(value) for value in values]
+    kinds = {type(value) for value in plain if value is not None}
+    if kinds == {int, float}:
+        return [None if value is None else float(value) for value in plain]
+    if len(kinds) > 1:
+        return [None if value is None else str(value) for value in plain]
+    return plain
