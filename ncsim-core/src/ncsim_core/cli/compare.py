@@ -1,6 +1,5 @@
 """``ncsim compare``: what changed between two runs, and why?"""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -9,34 +8,79 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ncsim_core.metrics.comparison import Comparison
+    from ncsim_core.sweep.selecting import Selection
+    from ncsim_core.sweep.table import Table
 
 
 def compare(
-    first: Annotated[
-        Path, typer.Argument(metavar="FIRST", help="Trace or output folder of the first run.")
-    ],
-    second: Annotated[
-        Path, typer.Argument(metavar="SECOND", help="Trace or output folder of the second run.")
-    ],
+    first: Annotated[str, typer.Argument(metavar="FIRST", help="A run, or a column of a study.")],
+    second: Annotated[str, typer.Argument(metavar="SECOND", help="What to compare it with.")],
+    *,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    digits: Annotated[int, typer.Option(min=0, max=12, help="After the point, in tables.")] = 3,
 ) -> None:
-    """Compare two runs: configuration, makespan, every task and transfer that changed, and why.
+    """Compare two runs, or two columns of a study: what changed, and why?
 
+    A run is a trace, the output folder of a run, or STUDY@COLUMN=VALUE,... that names one run of
+    a study; two runs are compared by configuration, makespan, and every task and transfer that
+    changed. STUDY@COLUMN=VALUE that names many is compared pair by pair: makespans, ratio, regret.
     Changes are second minus first; a positive time is later or longer in the second run.
 
-    Example: ncsim compare solo/ full/
+    Example: ncsim compare study@interference=none study@interference=csma_bianchi
     """
+    from ncsim_core.sweep.selecting import selection_of
+
+    columns = selection_of(first), selection_of(second)
+    if columns[0] is not None and columns[1] is not None:
+        tables = _tables_of(columns[0], columns[1])
+        if tables is not None:
+            _print_tables(tables, digits, as_json=as_json)
+            return
+    _compare_runs(first, second, as_json=as_json)
+
+
+def _compare_runs(first: str, second: str, *, as_json: bool) -> None:
+    from ncsim_core.cli.runs import run_of
     from ncsim_core.metrics.comparison import compare_runs
     from ncsim_core.metrics.documents import comparison_document
     from ncsim_core.trace.files import json_text
-    from ncsim_core.trace.loading import load_run
 
-    comparison = compare_runs(load_run(first), load_run(second))
+    comparison = compare_runs(run_of(first), run_of(second))
     if as_json:
         typer.echo(json_text(comparison_document(comparison)), nl=False)
         return
     for line in comparison_lines(comparison):
         typer.echo(line)
+
+
+def _tables_of(first: "Selection", second: "Selection") -> "list[Table] | None":
+    """Return the comparison of two columns; ``None`` if each is one run."""
+    from ncsim_core.sweep.comparing import pairs_table, pairs_totals
+    from ncsim_core.sweep.selecting import matching, resolved
+    from ncsim_core.sweep.store import Store
+
+    with Store(first.study, must_exist=True) as one, Store(second.study, must_exist=True) as other:
+        sides = matching(one, first.values), matching(other, second.values)
+        compared = {
+            **resolved(one.current()[0], first.values),
+            **resolved(other.current()[0], second.values),
+        }
+    if len(sides[0]) == len(sides[1]) == 1:
+        return None
+    table = pairs_table(*sides, compared)
+    return [table, pairs_totals(table)]
+
+
+def _print_tables(tables: "list[Table]", digits: int, *, as_json: bool) -> None:
+    from ncsim_core.cli.report import terminal_text
+    from ncsim_core.trace.files import json_text
+
+    if as_json:
+        names = ("pairs", "totals")
+        found = {name: table.to_dicts() for name, table in zip(names, tables, strict=True)}
+        typer.echo(json_text(found), nl=False)
+        return
+    typer.echo("\n\n".join(terminal_text(table, digits) for table in tables))
 
 
 def comparison_lines(comparison: "Comparison") -> "Iterator[str]":
@@ -51,6 +95,8 @@ def comparison_lines(comparison: "Comparison") -> "Iterator[str]":
         f"{_makespan(second, comparison.second_status)}"
         f"{'' if ratio is None else f', ratio {ratio:.6f}'}"
     )
+    if ratio is not None:
+        yield f"regret: {' | '.join(f'{each or 0.0:.1%}' for each in comparison.regrets)}"
     yield f"tasks that changed: {len(comparison.tasks)}"
     for task in comparison.tasks:
         nodes = _either(task.first_node or "-", task.second_node or "-")

@@ -1,6 +1,5 @@
 """``ncsim explain``: why is the makespan what it is?"""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,7 +10,11 @@ if TYPE_CHECKING:
 
 def explain(
     run: Annotated[
-        Path, typer.Argument(metavar="RUN", help="Trace file, or the output folder of a run.")
+        str,
+        typer.Argument(
+            metavar="RUN",
+            help="Trace, output folder of a run, or STUDY@COLUMN=VALUE,... for one of a study.",
+        ),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -22,12 +25,12 @@ def explain(
 
     Example: ncsim explain out/
     """
+    from ncsim_core.cli.runs import run_of
     from ncsim_core.metrics.documents import explanation_document
     from ncsim_core.metrics.explanation import explain_run
     from ncsim_core.trace.files import json_text
-    from ncsim_core.trace.loading import load_run
 
-    explanation = explain_run(load_run(run))
+    explanation = explain_run(run_of(run))
     if as_json:
         typer.echo(json_text(explanation_document(explanation)), nl=False)
         return

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from ncsim_core.metrics.losses import Part, service_parts_us
 from ncsim_core.metrics.settings import Difference, differences
-from ncsim_core.metrics.statistics import slowdown
+from ncsim_core.metrics.statistics import regret_of, slowdown
 from ncsim_core.trace.run_trace import RunTask, RunTrace, RunTransfer
 from ncsim_core.units import s_from_us
 
@@ -109,6 +109,12 @@ class Comparison:
     def makespan_ratio(self) -> float | None:
         """Return the second makespan over the first; ``None`` unless both completed."""
         return slowdown(self.second_makespan_s, self.first_makespan_s)
+
+    @property
+    def regrets(self) -> tuple[float | None, float | None]:
+        """Return what taking the first, and the second, costs relative to the better of the two."""
+        makespans_s = {0: self.first_makespan_s, 1: self.second_makespan_s}
+        return regret_of(0, makespans_s), regret_of(1, makespans_s)
 
 
 def compare_runs(first: RunTrace, second: RunTrace) -> Comparison:

@@ -35,6 +35,7 @@ def comparison_document(comparison: Comparison) -> dict[str, object]:
         "status": [comparison.first_status, comparison.second_status],
         "makespan_s": [comparison.first_makespan_s, comparison.second_makespan_s],
         "makespan_ratio": None if ratio == math.inf else ratio,  # JSON has no infinity
+        "regret": [None if each == math.inf else each for each in comparison.regrets],
         "tasks": [
             {
                 "label": change.label,
