@@ -1,63 +1,102 @@
 """``docs/equations.md`` names a function and a test for every equation of the paper, truly."""
 
-import importlib
+import importlib.util
+import inspect
+import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
 
-LABELS = (
-    "eq:fair_share", "eq:pathloss", "eq:rxpower", "eq:mcs", "eq:csrange", "eq:tau", "eq:p",
-    "eq:eta", "eq:sinr", "eq:capture", "eq:sinr_factor", "eq:combined", "eq:progress", "eq:regret",
+EQUATIONS = (
+    ("1", "eq:fair_share"), ("-", "(execution)"),
+    ("2", "eq:pathloss"), ("3", "eq:rxpower"), ("-", "(friis)"), ("-", "(snr)"),
+    ("-", "(shadowing)"), ("4", "eq:mcs"), ("5", "eq:csrange"), ("-", "(conflict)"),
+    ("-", "(rivals)"), ("6", "eq:tau"), ("7", "eq:p"), ("-", "(fixed-point)"), ("8", "eq:eta"),
+    ("-", "(slots)"), ("-", "(station)"), ("9", "eq:sinr"), ("10", "eq:capture"),
+    ("-", "(effective-rate)"), ("11", "eq:sinr_factor"), ("12", "eq:combined"),
+    ("13", "eq:progress"), ("14", "eq:regret"), ("-", "(winners)"), ("-", "(inversion)"),
+    ("-", "(packet-error)"), ("-", "(capture-success)"), ("-", "(airtime)"),
+    ("15", "(T_D)"), ("16, 18", "(T_S)"), ("17, 19", "(T_C)"), ("20", "(local-share)"),
+    ("-", "(random-order)"),
 )  # fmt: skip
-"""Every label of an equation in the paper's source, in order; so they are numbered 1 to 14."""
+"""Numbers and labels of all equations of the paper's source, in order; 15 to 20 have no label."""
 
-UNLABELLED = ("T_D", "T_S", "T_C", "local-share")
-"""Displayed equations of Appendix A that have a number and no label."""
-
-ROW = re.compile(r"^\| (?P<number>[^|]+) \| (?P<label>[^|]+) \|[^|]*\| `(?P<function>[^`]+)` "
-                 r"\| `(?P<test>[^`]+)` \|$", re.MULTILINE)  # fmt: skip
+CELLS = re.compile(r"(?<!\\)\|")
 
 
 def rows():
-    return [match.groupdict() for match in ROW.finditer((ROOT / "docs/equations.md").read_text())]
+    """Return the cells of each row of the table, without the ``|`` around them."""
+    lines = (ROOT / "docs/equations.md").read_text("utf-8").splitlines()
+    table = [CELLS.split(line)[1:-1] for line in lines if line.startswith("|")]
+    return [[cell.strip(" `") for cell in row] for row in table[2:]]
 
 
-def test_every_labelled_equation_is_listed_once_and_in_order():
-    labelled = [(row["number"], row["label"]) for row in rows() if row["label"].startswith("eq:")]
-
-    assert labelled == [(str(number), label) for number, label in enumerate(LABELS, 1)]
+ROWS = {row[1]: row for row in rows()}
 
 
-def test_every_displayed_equation_without_label_is_listed():
-    assert {f"({name})" for name in UNLABELLED} <= {row["label"] for row in rows()}
+def test_the_table_has_a_row_for_each_equation_and_no_other():
+    assert [(row[0], row[1]) for row in rows()] == list(EQUATIONS)
+    assert all(len(row) == 5 and all(row) for row in rows())
 
 
-def test_no_row_of_the_table_escapes_this_test():
-    text = (ROOT / "docs/equations.md").read_text()
+def test_all_numbers_of_the_paper_are_there():
+    numbers = [int(each) for number, _ in EQUATIONS for each in re.findall(r"\d+", number)]
 
-    assert len(rows()) == sum(line.startswith("| ") for line in text.splitlines()) - 1
-
-
-@pytest.mark.parametrize("row", rows(), ids=lambda row: row["label"])
-def test_the_function_and_the_test_exist(row):
-    module, _, path = row["function"].partition(":")
-    found = importlib.import_module(module)
-    for name in path.split("."):
-        found = getattr(found, name)
-    file, _, test = row["test"].partition("::")
-
-    assert callable(found)
-    assert re.search(rf"^\s*def {test}\(", (ROOT / file).read_text(), re.MULTILINE)
+    assert sorted(numbers) == list(range(1, 21))
 
 
-@pytest.mark.parametrize(
-    "row", [row for row in rows() if row["label"].startswith("eq:")], ids=lambda row: row["label"]
-)
-def test_the_source_of_each_labelled_equation_is_cited_beside_it(row):
-    module = importlib.import_module(row["function"].partition(":")[0])
-    text = Path(module.__file__).read_text()
+@pytest.fixture(scope="module")
+def breaking():
+    spec = importlib.util.spec_from_file_location("breaking", HERE / "breaking.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
-    assert row["label"] in text or f"Eq. {row['number']}" in text or row["label"] == "eq:fair_share"
+
+@pytest.fixture(scope="module")
+def noticed(tmp_path_factory):
+    """Run the tests of all rows, each while the function beside it does nothing but raise."""
+    pairs = [[function, test] for _, _, _, function, test in rows()]
+    told = tmp_path_factory.mktemp("breaking") / "noticed.json"
+    tests = sorted({test for _, test in pairs})
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "breaking", "-p", "no:cacheprovider"]
+    environment = {
+        "BREAK": json.dumps(pairs),
+        "NOTICED": str(told),
+        "HYPOTHESIS_PROFILE": "breaking",
+        "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")]),
+    }
+    run = subprocess.run(
+        [*command, *tests], cwd=ROOT, env=os.environ | environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    return json.loads(told.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("label", [label for _, label in EQUATIONS])
+def test_the_named_test_fails_when_the_named_function_is_broken(label, noticed):
+    _, _, _, function, test = ROWS[label]
+
+    assert [function, test] in noticed
+
+
+UNCITED = {"eq:fair_share"}  # the five steps of the refresh are cited where they are listed
+
+
+@pytest.mark.parametrize("label", [label for _, label in EQUATIONS])
+def test_the_function_says_which_equation_it_is(label, breaking):
+    number, _, _, function, _ = ROWS[label]
+    told = inspect.getdoc(breaking.function_of(function)) or ""
+
+    if label.startswith("eq:"):
+        assert label in told or re.search(rf"Eqs?\. {number}\b", told) or label in UNCITED
+    else:
+        assert "Source: " in told

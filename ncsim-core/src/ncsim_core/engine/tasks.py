@@ -95,7 +95,10 @@ def task_becomes_ready(run: TaskRun, state: State, setup: Setup) -> None:
 
 
 def start_task(run: TaskRun, state: State, setup: Setup) -> None:
-    """Begin to run a task on the node that is reserved for it."""
+    """Begin to run a task on the node that is reserved for it.
+
+    Source: Section IV-B, a task takes cost over capacity.
+    """
     if state.nodes[run.node].task is not run:
         raise EngineError(f"task {run.entry.number} starts on a node reserved for another")
     run.status, run.started_us = TaskStatus.RUNNING, state.now_us

@@ -41,7 +41,10 @@ class Tally:
 
 
 def tally(active: Collection[LinkIndex], related: Relations, levels: Levels) -> Tally:
-    """Return what a set of active links does to every link; whole numbers, so in any order."""
+    """Return what a set of active links does to every link; whole numbers, so in any order.
+
+    Source: Section IV-F (``sec:bianchi``), C and H of each link.
+    """
     counts = Tally(*(np.zeros(related.link_count, np.int64) for _ in range(3)))
     for link in active:
         row = related.row(link)

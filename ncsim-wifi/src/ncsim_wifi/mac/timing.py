@@ -45,7 +45,7 @@ class Timing(Protocol):
 def data_frame_us(rate_Mbps: float) -> float:
     """Return the duration of one data frame.
 
-    Source: Appendix A (``app:timing``), T_D(R).
+    Source: Appendix A (``app:timing``), Eq. 15.
 
     Args:
         rate_Mbps: PHY rate, greater than 0.
@@ -63,7 +63,7 @@ def data_frame_us(rate_Mbps: float) -> float:
 class AxTiming:
     """Durations of 802.11ax exchanges, also used for the n and ac tables (SPEC 2).
 
-    Source: Appendix A (``app:timing``), T_S and T_C, basic access and RTS/CTS.
+    Source: Appendix A (``app:timing``), basic access and RTS/CTS.
 
     Args:
         rts_cts: Whether RTS and CTS precede the data frame.
@@ -76,6 +76,8 @@ class AxTiming:
     def success_us(self, rate_Mbps: float) -> float:
         """Return T_S, the duration of a successful exchange.
 
+        Source: Appendix A (``app:timing``), Eqs. 16 and 18.
+
         >>> round(AxTiming().success_us(68.8), 1)
         321.6
         """
@@ -86,6 +88,8 @@ class AxTiming:
 
     def collision_us(self, rate_Mbps: float) -> float:
         """Return T_C, the duration of a collision.
+
+        Source: Appendix A (``app:timing``), Eqs. 17 and 19.
 
         >>> round(AxTiming(rts_cts=True).collision_us(68.8), 1)
         115.1

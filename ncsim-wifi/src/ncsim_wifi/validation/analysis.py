@@ -107,7 +107,10 @@ def _isolated_deviates(distance_m: float, index: int, side: int, radio: Radio) -
 
 
 def local_shares() -> Iterator[Row]:
-    """Yield that local shares stay within 1/(1+d), and that those can be realised (App. A)."""
+    """Yield that local shares stay within 1/(1+d), and that those can be realised.
+
+    Source: Appendix A, Eq. 20.
+    """
     random_source = random.Random(1)
     largest = max(_largest_share(random_source) for _ in range(SCENES))
     case = f"{SCENES} random scenes"

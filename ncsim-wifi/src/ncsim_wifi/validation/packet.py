@@ -30,7 +30,10 @@ def rows() -> Iterator[Row]:
 def relative_errors(
     predicted: Mapping[str, float], packets: Mapping[str, float]
 ) -> dict[str, float]:
-    """Return |predicted - packets| / packets by setting."""
+    """Return |predicted - packets| / packets by setting.
+
+    Source: Section VI-C (``sec:ns3_validation``).
+    """
     return {key: abs(predicted[key] - mean) / mean for key, mean in packets.items()}
 
 
