@@ -1,8 +1,9 @@
 """A pytest plug-in that runs tests on broken functions, to see which tests would notice.
 
-Loaded with ``-p breaking`` by ``test_equations.py``. ``BREAK`` holds ``[[function, test], ...]`` as JSON, functions as ``module:qualified.name``.
-Every collected test is run once per function named with it, while that function raises; the pairs
-that failed, as they should, are written to the file ``NOTICED``.
+Loaded with ``-p breaking`` by ``test_equations.py``. ``BREAK`` holds ``[[function, test], ...]``
+as JSON, functions as ``module:qualified.name``. Every collected test is run once per function
+named with it, while that function raises; the pairs that failed, as they should, are written
+to the file ``NOTICED``.
 """
 
 import functools

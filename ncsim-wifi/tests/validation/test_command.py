@@ -1,10 +1,11 @@
 import json
+import math
 from pathlib import Path
 
 import pytest
 from ncsim_wifi.validation import command, literature
 from ncsim_wifi.validation.command import app
-from ncsim_wifi.validation.rows import Row, table_text
+from ncsim_wifi.validation.rows import HEADINGS, Row, table_text
 from typer.testing import CliRunner
 
 RUNNER = CliRunner()
@@ -52,5 +53,36 @@ def test_the_verdict_compares_error_with_tolerance():
 
     assert [row.verdict for row in rows] == ["pass", "FAIL", "differs"]
     assert rows[0].relative_error == 0.5
+    assert Row("packet", "e", "c", "q", 0.0, "s", 0.0, None).verdict == "pass"
     assert Row("packet", "e", "c", "q", 0.0, "s", 0.0, 0.0).relative_error is None
-    assert len(table_text(rows).splitlines()) == 4
+
+
+@pytest.mark.parametrize(
+    ("expected", "measured", "verdict"),
+    [(2.0, 1.0, "pass"), (1.0, 1.0, "pass"), (1.0, 1.01, "FAIL"), (1.0, math.nan, "FAIL")],
+)
+def test_a_bound_may_be_kept_with_room_to_spare(expected, measured, verdict):
+    assert Row("packet", "e", "c", "q", expected, "s", measured, 0.0, "<=").verdict == verdict
+
+
+def test_what_never_ends_is_no_number_in_json_and_equals_itself():
+    never = Row("internal", "e", "c", "end s", math.inf, "fluid", math.inf, 0.0)
+    ends = Row("internal", "e", "c", "end s", math.inf, "fluid", 3.0, 0.0)
+
+    assert (never.verdict, ends.verdict) == ("pass", "FAIL")
+    assert never.to_dict()["expected"] is ends.to_dict()["error"] is None
+    assert "inf" in table_text([never])
+
+
+def test_a_table_has_a_heading_per_experiment_and_numbers_to_the_right():
+    rows = [
+        Row("internal", "one", "a", "s", 1.5, "fluid", 1.5, 0.0),
+        Row("internal", "two", "a longer case", "s", 100.0, "fluid", 100.00001, 1.0),
+    ]
+
+    head, one, first, two, second = table_text(rows).splitlines()
+
+    assert head.split() == [*HEADINGS, "verdict", "source"]
+    assert (one, two) == ("one", "two")
+    assert first.index("1.5") + 3 == second.index("100") + 3 == head.index("expected") + 8
+    assert second.split()[-5:] == ["1e-05", "<0.01%", "1", "pass", "fluid"]

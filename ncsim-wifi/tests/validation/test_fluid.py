@@ -1,8 +1,8 @@
 import math
 
 import pytest
-from ncsim_wifi.validation import fluid
-from ncsim_wifi.validation.engine_runs import measure
+from ncsim_wifi.validation import fluid, internal
+from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
 from ncsim_wifi.validation.scenes import Flow, parallel, single
 
 
@@ -31,3 +31,22 @@ def test_the_rate_log_averages_over_windows():
     assert rates.mean_rate_MBps(0, 0.5, 1.25) == pytest.approx(
         (0.5 * 3.78309 + 0.25 * 1.94249) / 0.75, abs=1e-4
     )
+
+
+@pytest.mark.parametrize("separation_m", [20.0, 70.0, 72.0, 100.0, 120.0])
+def test_the_engine_follows_the_fluid_in_fixed_capture_too(separation_m):
+    scene = parallel(2, separation_m, [Flow(0, 10.0), Flow(1, 5.0, 0.5)])
+    measured = measure(scene, FIXED_CAPTURE)
+
+    expected_s = fluid.ends_s(scene, fluid.fixed_capture_factor)
+
+    assert [measured.end_s(0), measured.end_s(1)] == pytest.approx(expected_s, abs=4e-6)
+
+
+def test_links_of_the_cascade_pause_and_resume():
+    scene = internal.OTHER_EXPERIMENTS["8 hidden cascade"]["5 links of 100 m, 75 m: pauses"]
+
+    at_first = fluid.rates_MBps(range(5), scene)
+
+    assert [at_first[flow] == 0.0 for flow in range(5)] == [False, True, True, True, False]
+    assert max(fluid.ends_s(scene)) < math.inf

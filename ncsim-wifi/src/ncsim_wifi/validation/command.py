@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from ncsim_wifi.validation.rows import Row
 
 EXIT_FAILED = 2
+ABOUT_DIFFERENCES = (
+    "differs: packets do something else than the model. The rows from the paper check that the\n"
+    "model errs as the paper says; docs/wifi-model.md says what that means for using it."
+)
 
 app = typer.Typer(rich_markup_mode=None, add_completion=False, pretty_exceptions_enable=False)
 
@@ -39,10 +43,10 @@ def validate_model(
     """Compare the radio model with its definitions, with Bianchi (2000) and with ns-3.
 
     Prints expected and measured, error and verdict row by row. "differs" marks a comparison with
-    packets in which the paper states an error; that the error is the stated one is a row of
-    its own. Exits with 2 if a row fails.
+    packets, in which the model is known to err; that it errs as the paper states is judged in
+    rows of its own. Takes a few seconds. Exits with 2 if a row fails.
 
-    Example: ncsim validate-model --stage literature
+    Example: ncsim validate-model --stage literature --plots figures/
     """
     chosen = stage or list(StageName)
     rows = [row for each in chosen for row in rows_of(each)]
@@ -82,6 +86,8 @@ def _print_tables(stages: "Iterable[StageName]", rows: "list[Row]") -> None:
         }
         told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
         typer.echo(f"{len(of_stage)} comparisons: {told}")
+        if counts["differs"]:
+            typer.echo(ABOUT_DIFFERENCES)
 
 
 def _write_figures(folder: Path) -> None:

@@ -1,16 +1,15 @@
-"""What should come out, worked out without the engine and without the model's tables.
+"""What should come out, worked out without the engine and without the model's code.
 
 A scene's transfers are fluids: between two starts or ends all rates are constant. Each rate is
 taken from the paper's formulas literally, in decibels and floating point, from the positions.
-Nothing but eta(n, R) and the rate table is shared with the code that is validated.
+Only the files with the rate tables are shared with the code that is validated.
 """
 
 import math
 from collections.abc import Callable, Sequence
 
-from ncsim_wifi.mac.efficiency import data_airtime_fraction, efficiency
-from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import read_table
+from ncsim_wifi.validation.literal_mac import airtime_fraction, goodput_Mbps
 from ncsim_wifi.validation.scenes import Scene
 
 Factor = Callable[[int, frozenset[int], Scene], float]
@@ -70,9 +69,13 @@ def sinr_dB(link: int, interferers_dBm: Sequence[float], scene: Scene) -> float:
     return 10.0 * math.log10(10.0 ** (signal_dBm / 10.0) / unwanted_mW)
 
 
+def stations(link: int, active: frozenset[int], scene: Scene) -> int:
+    """Return n, a link and its active contenders."""
+    return 1 + sum(conflict(link, other, scene) for other in active - {link})
+
+
 def effective_rate_factor(link: int, active: frozenset[int], scene: Scene) -> float:
     """Return the factor of the default model: Eqs. 10 to 12."""
-    timing = AxTiming(scene.radio.rts_cts)
     clean_Mbps = clean_rate_Mbps(link, scene)
     effective_Mbps = clean_Mbps
     hidden = hidden_powers_dBm(link, active, scene)
@@ -81,21 +84,20 @@ def effective_rate_factor(link: int, active: frozenset[int], scene: Scene) -> fl
         effective_Mbps = min(clean_Mbps, _rate_for(ratio_dB, scene.radio.capture_margin_dB, scene))
     if effective_Mbps == 0.0:
         return 0.0
-    n = 1 + sum(conflict(link, other, scene) for other in active - {link})
-    served = effective_Mbps * efficiency(n, effective_Mbps, timing) / n
-    return served / (clean_Mbps * efficiency(1, clean_Mbps, timing))
+    n, rts_cts = stations(link, active, scene), scene.radio.rts_cts
+    served_Mbps = goodput_Mbps(n, effective_Mbps, rts_cts=rts_cts) / n
+    return served_Mbps / goodput_Mbps(1, clean_Mbps, rts_cts=rts_cts)
 
 
 def fixed_capture_factor(link: int, active: frozenset[int], scene: Scene) -> float:
     """Return the factor of the optional fixed-capture mode for at most one interferer."""
-    timing = AxTiming()
     clean_Mbps = clean_rate_Mbps(link, scene)
-    n = 1 + sum(conflict(link, other, scene) for other in active - {link})
-    factor = efficiency(n, clean_Mbps, timing) / (n * efficiency(1, clean_Mbps, timing))
+    n = stations(link, active, scene)
+    factor = goodput_Mbps(n, clean_Mbps) / (n * goodput_Mbps(1, clean_Mbps))
     for other, interferer_dBm in hidden_powers_dBm(link, active, scene).items():
         ratio_dB = sinr_dB(link, [interferer_dBm], scene)
         if _rate_for(ratio_dB, scene.radio.capture_margin_dB, scene) < clean_Mbps:
-            factor *= 1.0 - data_airtime_fraction(clean_rate_Mbps(other, scene), timing)
+            factor *= 1.0 - airtime_fraction(clean_rate_Mbps(other, scene))
     return factor
 
 
@@ -104,7 +106,7 @@ def clean_goodput_MBps(link: int, scene: Scene) -> float:
     rate_Mbps = clean_rate_Mbps(link, scene)
     if rate_Mbps == 0.0:
         return 0.0
-    return rate_Mbps * efficiency(1, rate_Mbps, AxTiming(scene.radio.rts_cts)) / 8.0
+    return goodput_Mbps(1, rate_Mbps, rts_cts=scene.radio.rts_cts) / 8.0
 
 
 def rates_MBps(

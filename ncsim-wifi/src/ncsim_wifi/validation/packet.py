@@ -1,20 +1,22 @@
 """Stage 3: what ncsim predicts against what ns-3 measured, with the errors the model has."""
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from statistics import fmean
 
 from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import rate_table
 from ncsim_wifi.radio import Radio
-from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
+from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, RateLog, measure
 from ncsim_wifi.validation.rows import Row, half_a_digit, read_data
 from ncsim_wifi.validation.scenes import Flow, parallel
 
 CONTENTION_SPACING_m = 5.0
 OVERLAP_SPACING_m = 60.0
 RATIO_SEPARATION_m, RECOVERY_SEPARATION_m = "80", "120"
-RATE_DIGITS = half_a_digit(3)
+MEDIAN_DIGITS = 2
+HIDDEN_SEPARATION_m = 80
 A_START_s, B_START_s, B_END_s = 0.5, 2.0, 4.0
 
 
@@ -73,6 +75,8 @@ def separation() -> Iterator[Row]:
     name = "2 separation, fixed_capture"
     for key, mean in packets.items():
         yield _row(name, f"{key} m", "MB/s per link", mean, captured[key])
+    for key, expected_MBps in stated["fixed_capture_MBps"].items():
+        yield _stated(name, f"{key} m", "MB/s per link", expected_MBps, captured[key], 2)
     errors = relative_errors(captured, packets)
     yield from _summary(name, errors, stated["fixed_capture_mean"], stated["fixed_capture_max"])
     default = predicted_separation_MBps("csma_bianchi")
@@ -93,7 +97,7 @@ def overlapping_domains() -> Iterator[Row]:
         rate_MBps = measured.rates.first_rate_MBps(flow)
         case = f"link {printed['link']}"
         yield _stated(name, case, "MB/s, all active", printed["ncsim_MBps"], rate_MBps, 3)
-        yield _row(name, case, "MB/s, all active", printed["ns3_median_MBps"], rate_MBps)
+        yield from _against_median(name, case, "MB/s, all active", printed, rate_MBps)
 
 
 def overhead() -> Iterator[Row]:
@@ -105,25 +109,51 @@ def overhead() -> Iterator[Row]:
         rate_MBps = station_goodput_MBps(1, rates_Mbps[printed["mcs"]], timing)
         case = f"MCS {printed['mcs']}, RTS {'on' if printed['rts_cts'] else 'off'}"
         yield _stated(name, case, "MB/s", printed["ncsim_MBps"], rate_MBps, 3)
-        yield _row(name, case, "MB/s", printed["ns3_median_MBps"], rate_MBps)
+        yield from _against_median(name, case, "MB/s", printed, rate_MBps)
 
 
 def starts_and_stops() -> Iterator[Row]:
     """Yield the rates of two links before, during and after the second's demand."""
-    for separation_m in (40.0, 80.0):
-        during_MBps = measure(parallel(2, separation_m)).mean_rate_MBps(1)
-        size_MB = during_MBps * (B_END_s - B_START_s)
-        flows = [Flow(0, 100.0, A_START_s), Flow(1, size_MB, B_START_s)]
-        rates = measure(parallel(2, separation_m, flows)).rates
-        for printed in read_data("paper_tables")["dynamic"]:
-            if printed["separation_m"] == separation_m:
-                start_s, end_s = printed["window_s"]
-                flow = "AB".index(printed["link"])
-                rate_MBps = rates.mean_rate_MBps(flow, start_s, end_s)
-                case = f"{separation_m:g} m, {printed['link']}, {start_s:g}-{end_s:g} s"
-                name = "5 starts and stops"
-                yield _stated(name, case, "MB/s", printed["ncsim_MBps"], rate_MBps, 3)
-                yield _row(name, case, "MB/s", printed["ns3_median_MBps"], rate_MBps)
+    name, over = "5 starts and stops", []
+    for printed in read_data("paper_tables")["dynamic"]:
+        separation_m, (start_s, end_s) = printed["separation_m"], printed["window_s"]
+        rates = predicted_starts_and_stops(separation_m)
+        rate_MBps = rates.mean_rate_MBps("AB".index(printed["link"]), start_s, end_s)
+        case = f"{separation_m:g} m, {printed['link']}, {start_s:g}-{end_s:g} s"
+        yield _stated(name, case, "MB/s", printed["ncsim_MBps"], rate_MBps, 3)
+        yield _row(name, case, "MB/s", printed["ns3_median_MBps"], rate_MBps)
+        if separation_m == HIDDEN_SEPARATION_m and B_START_s <= start_s < B_END_s:
+            over.append(rate_MBps / printed["ns3_median_MBps"])
+    stated = read_data("paper_tables")["packet_errors"]["default_ratio_in_overlap"]
+    yield _stated(name, "80 m, A and B, 2.5-3.5 s", "model over packets", stated, fmean(over), 1)
+
+
+@cache
+def predicted_starts_and_stops(separation_m: float) -> RateLog:
+    """Return the rates over time of two links, of which B is backlogged from 2 to 4 s only."""
+    during_MBps = measure(parallel(2, separation_m)).mean_rate_MBps(1)
+    size_MB = during_MBps * (B_END_s - B_START_s)
+    flows = [Flow(0, 100.0, A_START_s), Flow(1, size_MB, B_START_s)]
+    return measure(parallel(2, separation_m, flows)).rates
+
+
+def _against_median(
+    experiment: str, case: str, quantity: str, printed: Mapping[str, float], rate_MBps: float
+) -> Iterator[Row]:
+    """Yield the model against a median of packets, and that it errs by no more than the paper says.
+
+    The paper states the 95th percentile over seeds of the error, which exceeds the error against
+    the median; and of that, printed to two decimals, only the least it can be is known.
+    """
+    median_MBps = printed["ns3_median_MBps"]
+    yield _row(experiment, case, quantity, median_MBps, rate_MBps)
+    nearest_MBps = median_MBps + half_a_digit(MEDIAN_DIGITS) * (
+        1.0 if rate_MBps > median_MBps else -1.0
+    )
+    error = abs(rate_MBps - nearest_MBps) / nearest_MBps
+    limit = printed["error_p95"]
+    quantity = "error against median"
+    yield Row("packet", experiment, case, quantity, limit, "paper, p95", error, 0.0, "<=")
 
 
 def _row(experiment: str, case: str, quantity: str, packets: float, model: float) -> Row:

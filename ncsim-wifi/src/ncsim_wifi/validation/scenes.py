@@ -63,12 +63,13 @@ def parallel(
     separation_m: float,
     flows: Sequence[Flow] | None = None,
     radio: Radio = Radio(),  # noqa: B008 - frozen
+    length_m: float = LENGTH_m,
 ) -> Scene:
-    """Return parallel 30 m links; by default each carries one transfer of the same size."""
+    """Return parallel links; by default each carries one transfer of the same size."""
     rows_m = [separation_m * i for i in range(count)]
     return Scene(
         tuple((0.0, y_m) for y_m in rows_m),
-        tuple((LENGTH_m, y_m) for y_m in rows_m),
+        tuple((length_m, y_m) for y_m in rows_m),
         tuple(flows) if flows is not None else tuple(Flow(i) for i in range(count)),
         radio,
     )
