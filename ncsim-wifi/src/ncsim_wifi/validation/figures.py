@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 import matplotlib as mpl
 import numpy as np
@@ -10,24 +11,33 @@ mpl.use("Agg")
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from ncsim_core.units import MEGABITS_PER_MEGABYTE
 
 from ncsim_wifi.phy.mcs import rate_table
 from ncsim_wifi.phy.sensing import carrier_sensing_range_m
 from ncsim_wifi.radio import Radio
 from ncsim_wifi.validation import fluid
+from ncsim_wifi.validation.analysis import threshold_distances_m
 from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, RAW_PHY, measure
-from ncsim_wifi.validation.internal import EXP2_SEPARATIONS_m, snr_at_dB
+from ncsim_wifi.validation.internal import EXP2_SEPARATIONS_m
 from ncsim_wifi.validation.literature import saturation_throughput
 from ncsim_wifi.validation.packet import (
     predicted_contention_MBps,
     predicted_separation_MBps,
+    predicted_starts_and_stops,
 )
 from ncsim_wifi.validation.rows import read_data
 from ncsim_wifi.validation.scenes import parallel, single
 
-MODEL, SECOND, PACKETS, GREY = "#1f5fa8", "#d1782b", "#222222", "#8a8a8a"
+MODEL, SECOND, ENGINE, PACKETS, GREY = "#0072B2", "#D55E00", "#D55E00", "#000000", "#777777"
+Corner: TypeAlias = Literal["upper right", "lower right", "lower left"]
+
+STEP_s = 0.05
+STEPS_s = [0.5 + STEP_s * step for step in range(101)]
 READING_ERROR = 0.0017  # two pixels of Bianchi's figure
-DPI = 150
+DPI = 300
+MARKERS = {"A": ("s", 8.0), "B": ("o", 4.0)}  # both are seen where they coincide
+HEADROOM = 1.12  # of the vertical axis above the largest value
 
 
 def write_figures(folder: Path) -> list[Path]:
@@ -38,39 +48,42 @@ def write_figures(folder: Path) -> list[Path]:
         "experiment_2": experiment_2,
         "bianchi_figure_6": bianchi_figure_6,
         "ns3": ns3,
+        "starts_and_stops": starts_and_stops,
     }
     paths = []
-    for name, draw in drawings.items():
-        path = folder / f"{name}.png"
-        draw().savefig(path, dpi=DPI)
-        paths.append(path)
+    with mpl.rc_context({"font.size": 9, "axes.titlesize": 10, "legend.fontsize": 8}):
+        for name, draw in drawings.items():
+            path = folder / f"{name}.png"
+            draw().savefig(path, dpi=DPI)
+            paths.append(path)
     return paths
 
 
 def experiment_1() -> Figure:
     """Return PHY rate against link length (Figure ``fig:exp1``)."""
     figure, (axes,) = _panels(1)
-    radio, table = Radio(), rate_table(Radio())
-    lengths_m = np.linspace(1.0, 145.0, 2000)
-    rates_MBps = [
-        ([0.0, *table.rate_Mbps])[table.index_for(snr_at_dB(float(at), radio)) + 1] / 8.0
-        for at in lengths_m
-    ]
-    axes.step(lengths_m, rates_MBps, where="post", color=MODEL, label="selected by SNR")
+    table, ends_m = rate_table(Radio()), threshold_distances_m(Radio())[::-1]
+    rates_MBps = [rate / MEGABITS_PER_MEGABYTE for rate in reversed(table.rate_Mbps)]
+    axes.stairs([*rates_MBps, 0.0], [0.0, *ends_m, 150.0], color=MODEL, lw=1.5, label="Eq. 4")
+    for mcs, (rate_MBps, end_m) in enumerate(
+        zip(reversed(rates_MBps), reversed(ends_m), strict=True)
+    ):
+        axes.annotate(
+            f"{mcs}",
+            (end_m, rate_MBps),
+            (3, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=7,
+            color=MODEL,
+        )
     printed = read_data("paper_tables")["exp1"]
-    axes.plot(
-        [each["distance_m"] for each in printed],
-        [
-            measure(single(each["distance_m"]), "none", RAW_PHY).mean_rate_MBps(0)
-            for each in printed
-        ],
-        "o",
-        color="#c0392b",
-        label="transfer in the engine",
-    )
-    _label(
-        axes, "Experiment 1: 802.11ax, 20 MHz, 5 GHz, n = 3", "link length (m)", "PHY rate (MB/s)"
-    )
+    lengths_m = [each["distance_m"] for each in printed]
+    measured_MBps = [measure(single(at), "none", RAW_PHY).mean_rate_MBps(0) for at in lengths_m]
+    axes.plot(lengths_m, measured_MBps, "o", color=ENGINE, ms=5, label="transfer in the engine")
+    axes.set_xlim(0.0, 150.0)
+    title = "One link, 802.11ax, 20 MHz; numbers are MCS"
+    _label(axes, title, "Link length (m)", "PHY rate (MB/s)")
     return figure
 
 
@@ -82,11 +95,12 @@ def experiment_2() -> Figure:
         EXP2_SEPARATIONS_m,
         [measure(parallel(2, s)).mean_rate_MBps(0) for s in EXP2_SEPARATIONS_m],
         "o",
-        color="#c0392b",
+        color=ENGINE,
+        ms=5,
         label="transfer in the engine",
     )
     _mark_sensing_range(axes)
-    _label(axes, "Experiment 2: two parallel 30 m links", "separation (m)", "rate per link (MB/s)")
+    _label(axes, "Two parallel 30 m links", "Separation (m)", "Rate per link (MB/s)", "lower right")
     return figure
 
 
@@ -95,7 +109,7 @@ def bianchi_figure_6() -> Figure:
     figure, (axes,) = _panels(1)
     points = read_data("bianchi_fig6")["points"]
     stations = range(5, 51)
-    for (window, stage), colour in (((32, 5), MODEL), ((128, 3), SECOND)):
+    for (window, stage), colour, shape in (((32, 5), MODEL, "o"), ((128, 3), SECOND, "s")):
         curve = [saturation_throughput(n, window, stage) for n in stations]
         axes.plot(stations, curve, color=colour, label=f"solver, W = {window}, m = {stage}")
         markers = [each for each in points if (each["W"], each["m"]) == (window, stage)]
@@ -103,34 +117,75 @@ def bianchi_figure_6() -> Figure:
             [each["n"] for each in markers],
             [each["digitised"] for each in markers],
             yerr=READING_ERROR,
-            fmt="o",
-            markersize=5,
+            fmt=shape,
+            markersize=4,
             markerfacecolor="white",
             color=colour,
             capsize=3,
-            label=f"Bianchi (2000), W = {window}",
+            label=f"Bianchi (2000), \N{PLUS-MINUS SIGN}{READING_ERROR}",
         )
-    _label(axes, "Bianchi's Figure 6", "stations", "normalised saturation throughput S")
-    axes.set_ylim(0.55, 0.87)
+    title = "Saturation throughput, FHSS at 1 Mb/s, basic access"
+    _label(axes, title, "Number of stations", "Normalised throughput S", "lower left")
+    axes.set_ylim(0.56, 0.86)
+    axes.set_xticks(range(5, 51, 5))
     return figure
 
 
 def ns3() -> Figure:
     """Return both packet comparisons (Figure ``fig:ns3_validation``)."""
     figure, (left, right) = _panels(2)
-    packets = read_data("ns3_published")
-    means = packets["contention_5m_spacing"]
-    _draw(left, means, "s", PACKETS, "ns-3")
+    packets, goodput = read_data("ns3_published"), "Goodput per link (MB/s)"
     _draw(left, predicted_contention_MBps(), "o-", MODEL, "ncsim")
-    _label(left, "(a) contention, 5 m spacing", "links", "goodput per link (MB/s)")
-    _draw(right, packets["two_links_by_separation_m"], "s", PACKETS, "ns-3")
+    _draw(left, packets["contention_5m_spacing"], "s", PACKETS, "ns-3, mean of 20 seeds")
+    _label(left, "(a) Parallel 30 m links, 5 m apart", "Number of links", goodput)
+    _draw(right, _curve_MBps(fluid.effective_rate_factor), ":", MODEL, "ncsim, effective_rate")
+    _draw(right, _curve_MBps(fluid.fixed_capture_factor), "-", SECOND, "")
     captured = predicted_separation_MBps(FIXED_CAPTURE)
     _draw(right, captured, "D", SECOND, "ncsim, fixed_capture")
-    _draw(right, _curve_MBps(fluid.fixed_capture_factor), "-", SECOND, "")
-    _draw(right, _curve_MBps(fluid.effective_rate_factor), ":", MODEL, "ncsim, effective_rate")
+    _draw(right, packets["two_links_by_separation_m"], "s", PACKETS, "ns-3, mean of 20 seeds")
     _mark_sensing_range(right)
-    _label(right, "(b) two links", "separation (m)", "goodput per link (MB/s)")
+    _label(right, "(b) Two parallel 30 m links", "Separation (m)", goodput, "lower right")
     return figure
+
+
+def starts_and_stops() -> Figure:
+    """Return the rates of two links while the second starts and stops (``fig:dynamic_packet``)."""
+    figure, panels = _panels(2)
+    names = {40: "(a) 40 m apart: they hear each other", 80: "(b) 80 m apart: hidden"}
+    for axes, (separation_m, title) in zip(panels, names.items(), strict=True):
+        rates = predicted_starts_and_stops(separation_m)
+        for flow, (colour, style) in enumerate(((MODEL, "-"), (SECOND, "--"))):
+            steps = [rates.mean_rate_MBps(flow, at, at + STEP_s) for at in STEPS_s[:-1]]
+            label = f"{'AB'[flow]}, ncsim"
+            axes.stairs(steps, STEPS_s, color=colour, ls=style, baseline=None, label=label)
+            _draw_windows(axes, separation_m, "AB"[flow], colour)
+        _label(axes, title, "Time (s)", "Goodput (MB/s)", None)
+        axes.set_xlim(STEPS_s[0], STEPS_s[-1])
+        axes.set_ylim(-0.1, 4.2)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw_windows(axes: Axes, separation_m: int, letter: str, colour: str) -> None:
+    """Draw medians and quartiles of packets over their windows."""
+    label, (shape, size) = f"{letter}, ns-3: median and quartiles", MARKERS[letter]
+    for each in read_data("paper_tables")["dynamic"]:
+        if (each["separation_m"], each["link"]) == (separation_m, letter):
+            start_s, end_s = each["window_s"]
+            median_MBps, (low_MBps, high_MBps) = each["ns3_median_MBps"], each["ns3_iqr_MBps"]
+            axes.errorbar(
+                (start_s + end_s) / 2.0,
+                median_MBps,
+                xerr=(end_s - start_s) / 2.0,
+                yerr=[[median_MBps - low_MBps], [high_MBps - median_MBps]],
+                fmt=shape,
+                markersize=size,
+                markerfacecolor="none",
+                color=colour,
+                capsize=2,
+                label=label or None,
+            )
+            label = ""
 
 
 def _curve_MBps(factor: fluid.Factor) -> dict[str, float]:
@@ -140,31 +195,28 @@ def _curve_MBps(factor: fluid.Factor) -> dict[str, float]:
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes]]:
-    figure = Figure(figsize=(6.0 * count, 4.0), layout="constrained")
+    figure = Figure(figsize=(5.0 * count, 3.4), layout="constrained")
     return figure, [figure.add_subplot(1, count, number + 1) for number in range(count)]
 
 
 def _draw(axes: Axes, values: Mapping[str, float], style: str, colour: str, label: str) -> None:
-    axes.plot(
-        [float(key) for key in values],
-        list(values.values()),
-        style,
-        color=colour,
-        markersize=5,
-        label=label or None,
-    )
+    at, heights = [float(key) for key in values], list(values.values())
+    axes.plot(at, heights, style, color=colour, markersize=4.5, linewidth=1.5, label=label or None)
 
 
 def _mark_sensing_range(axes: Axes) -> None:
-    axes.axvline(
-        carrier_sensing_range_m(Radio()), color=GREY, linestyle="--", linewidth=1, label="71.2 m"
-    )
+    range_m = carrier_sensing_range_m(Radio())
+    label = f"carrier-sensing range, {range_m:.1f} m"
+    axes.axvline(range_m, color=GREY, linestyle="--", linewidth=0.8, label=label)
 
 
-def _label(axes: Axes, title: str, x_label: str, y_label: str) -> None:
-    axes.set_title(title, fontsize=11)
+def _label(
+    axes: Axes, title: str, x_label: str, y_label: str, legend_at: Corner | None = "upper right"
+) -> None:
+    axes.set_title(title)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.set_ylim(bottom=0.0)
-    axes.grid(visible=True, alpha=0.3)
-    axes.legend(fontsize=9)
+    axes.set_ylim(0.0, HEADROOM * axes.dataLim.ymax)
+    axes.grid(visible=True, alpha=0.3, linewidth=0.5)
+    if legend_at is not None:
+        axes.legend(loc=legend_at)
