@@ -14,12 +14,14 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MAX_CACHED_RESULTS = 64
+_MISSING = object()
 
 
 class ModelCache:
     """Results that depend only on a network and options, shared by the runs of one process.
 
-    The least recently used entry goes first. A cached value must never be changed.
+    The least recently used entry goes first. A cached value must never be changed. Threads may
+    share a cache: at worst they build the same value twice.
     """
 
     def __init__(self, max_entries: int = MAX_CACHED_RESULTS) -> None:
@@ -28,13 +30,11 @@ class ModelCache:
 
     def get_or_build(self, key: Hashable, build: Callable[[], T]) -> T:
         """Return the value kept under ``key``, building it the first time."""
-        if key in self._entries:
-            self._entries[key] = self._entries.pop(key)
-            return cast("T", self._entries[key])
-        value = build()
+        known = self._entries.pop(key, _MISSING)
+        value = build() if known is _MISSING else cast("T", known)
         self._entries[key] = value
         if len(self._entries) > self._max_entries:
-            del self._entries[next(iter(self._entries))]
+            self._entries.pop(list(self._entries)[0], None)  # noqa: RUF015 - one step, for threads
         return value
 
 

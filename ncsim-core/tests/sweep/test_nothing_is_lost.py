@@ -7,6 +7,9 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
+from pathlib import Path
+from random import Random
 
 import pytest
 import yaml
@@ -100,6 +103,28 @@ def records(study):
         return table_of(store).to_dicts()
 
 
+def timeless(study):
+    return [{k: v for k, v in row.items() if k != "wall_s"} for row in records(study)]
+
+
+def finished(study):
+    """Return all results by key; an empty study has none."""
+    if finished_count(study) == 0:
+        return {}
+    with closing(sqlite3.connect(f"file:{study}/results.sqlite?mode=ro", uri=True)) as connection:
+        return {row[0]: row[1:] for row in connection.execute("SELECT * FROM result")}
+
+
+def workers_of(parent):
+    """Return the processes of a pool that do runs; spawn adds a tracker, which does not."""
+    children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
+    return [
+        int(each)
+        for each in children
+        if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+    ]
+
+
 def finished_count(study):
     try:
         connection = sqlite3.connect(f"file:{study}/results.sqlite?mode=ro", uri=True)
@@ -114,28 +139,47 @@ def finished_count(study):
 
 
 @pytest.mark.slow
-def test_a_sweep_killed_again_and_again_loses_and_repeats_nothing(tmp_path, ncsim):
+def test_a_sweep_killed_at_any_moment_loses_and_repeats_nothing(tmp_path, ncsim):
     options = {"scheduler.options.mood": ["slow"], "network.nodes": [2, 3, 4]}
     path = sweep_file(tmp_path, options, replicate={"seeds": 60})
-    study, kept = tmp_path / "study", 0
-    for wanted in (1, 40, 90):
+    study, kept, moment = tmp_path / "study", {}, Random(5)
+    for wanted in (0, 1, 40, 90):
         process = ncsim("sweep", path, "-o", study, "-j", 2)
         while finished_count(study) < wanted and process.poll() is None:
             time.sleep(0.02)
+        time.sleep(moment.random() * 0.3)
         os.kill(process.pid, signal.SIGKILL)
         process.communicate(timeout=60)
-        assert finished_count(study) >= kept
-        kept = finished_count(study)
+        assert kept.items() <= finished(study).items()
+        kept = finished(study)
     finish(ncsim("sweep", path, "-o", study, "-j", 2), 0)
     whole = tmp_path / "whole"
     finish(ncsim("sweep", path, "-o", whole, "-j", 2), 0)
 
-    def plain(rows):
-        return [{k: v for k, v in row.items() if k != "wall_s"} for row in rows]
+    assert len(records(study)) == 180
+    assert {row["status"] for row in records(study)} == {"completed"}
+    assert kept.items() <= finished(study).items()  # wall times too: they were not done again
+    assert timeless(study) == timeless(whole)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds workers under /proc")
+def test_workers_killed_at_any_moment_lose_and_repeat_nothing(tmp_path, ncsim):
+    options = {"scheduler.options.mood": ["slow"], "network.nodes": [2, 3, 4]}
+    path = sweep_file(tmp_path, options, replicate={"seeds": 60})
+    study, kept, moment = tmp_path / "study", {}, Random(6)
+    process = ncsim("sweep", path, "-o", study, "-j", 2)
+    for wanted in (1, 60):
+        while finished_count(study) < wanted and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(moment.random() * 0.3)
+        os.kill(moment.choice(workers_of(process.pid)), signal.SIGKILL)
+        kept |= finished(study)
+    finish(process, 0)
 
     assert len(records(study)) == 180
     assert {row["status"] for row in records(study)} == {"completed"}
-    assert plain(records(study)) == plain(records(whole))
+    assert kept.items() <= finished(study).items()
 
 
 def test_workers_leave_when_their_parent_is_killed(tmp_path, ncsim):

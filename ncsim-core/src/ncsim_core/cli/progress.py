@@ -2,6 +2,8 @@
 
 import sys
 import time
+from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from typing_extensions import override
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 
 QUIET_FOR_s: Final = 0.5
 REDRAW_EVERY_s: Final = 0.1
+MARK_EVERY_s: Final = 0.5
+LATELY_s: Final = 10.0
 
 
 class ProgressLine:
@@ -47,6 +51,28 @@ class ProgressLine:
         sys.stderr.write("\r" + text.ljust(self._width))
         sys.stderr.flush()
         self._width = len(text)
+
+
+class Pace:
+    """How many per second were done lately, so that a burst at the start is soon forgotten.
+
+    Args:
+        clock: Seconds; for tests.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._marks: deque[tuple[float, int]] = deque([(clock(), 0)])
+
+    def at(self, done: int) -> float:
+        """Return how many per second were done over the last seconds, with ``done`` so far."""
+        now_s = self._clock()
+        if now_s - self._marks[-1][0] >= MARK_EVERY_s:
+            self._marks.append((now_s, done))
+        while len(self._marks) > 1 and now_s - self._marks[1][0] >= LATELY_s:
+            self._marks.popleft()
+        since_s, before = self._marks[0]
+        return (done - before) / (now_s - since_s) if now_s > since_s else 0.0
 
 
 class RunProgress(Observer):

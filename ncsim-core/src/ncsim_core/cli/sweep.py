@@ -1,16 +1,20 @@
 """``ncsim sweep``: many runs from one file; status and merging of studies."""
 
+import json
 import sys
-import time
 from collections import Counter
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ncsim_core.cli.exit_codes import ExitCode
-from ncsim_core.cli.progress import ProgressLine
+from ncsim_core.cli.progress import Pace, ProgressLine
 from ncsim_core.errors import ScenarioError
+
+SHOWN_ERRORS = 5
+ERROR_WIDTH = 200
 
 if TYPE_CHECKING:
     from ncsim_core.sweep.running import SweepResults
@@ -28,7 +32,10 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         Path | None, typer.Option("--output", "-o", help="Folder of the study.")
     ] = None,
     *,
-    workers: Annotated[int | None, typer.Option("--workers", "-j", min=1)] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", "-j", min=1, help="Processes; by default one per processor."),
+    ] = None,
     executor: Annotated[
         str, typer.Option(help="process, serial, dask, or one that a package offers.")
     ] = "process",
@@ -40,17 +47,22 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         bool, typer.Option("--retry-failed", help="Do runs again that failed or hit a limit.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Status as JSON.")] = False,
 ) -> None:
     """Run all combinations of a sweep file; results that the study holds are not run again.
+
+    Whatever stops it, what was finished is kept, and the same command goes on from there. With
+    'status STUDY' it says how far a study is and what went wrong; with 'merge STUDY FROM...' it
+    puts the parts that --shard made into one study.
 
     Example: ncsim sweep factorial.yaml -o study/ && ncsim report study/
     """
     verb, *rest = file
     if verb == "status" and rest:
-        _status(Path(rest[0]))
+        _status(Path(rest[0]), as_json=as_json)
         return
     if verb == "merge" and len(rest) > 1:
-        _merge(Path(rest[0]), [Path(each) for each in rest[1:]])
+        _merge(Path(rest[0]), [Path(each) for each in rest[1:]], as_json=as_json)
         return
     if rest or output is None:
         raise ScenarioError("give one sweep file and -o STUDY, or 'status STUDY', or 'merge ...'")
@@ -61,17 +73,19 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         counts = _carried_out(results, quiet=quiet)
     typer.echo(f"{results.plan.name}: {_summary(counts)}, in {output}/")
     if counts.keys() - {"completed"}:
+        typer.echo(f"ncsim sweep status {output} says why runs did not complete", err=True)
         raise typer.Exit(ExitCode.RUN_DID_NOT_COMPLETE)
 
 
 def _carried_out(results: "SweepResults", *, quiet: bool) -> Counter[str]:
     line = ProgressLine(is_wanted=not quiet)
     counts: Counter[str] = Counter()
-    started_s = time.monotonic()
+    pace = Pace()
     try:
         for done, record in enumerate(results, start=1):
             counts[record["status"]] += 1
-            line.show(_progress(done, results.planned, time.monotonic() - started_s, counts))
+            rate = pace.at(done)
+            line.show(_progress(done, results.planned, rate, counts))
     except KeyboardInterrupt:
         line.clear()
         message = "interrupted; what was done is kept, the same command goes on from there"
@@ -82,11 +96,10 @@ def _carried_out(results: "SweepResults", *, quiet: bool) -> Counter[str]:
     return counts
 
 
-def _progress(done: int, planned: int, spent_s: float, counts: Counter[str]) -> str:
-    rate = done / spent_s if spent_s > 0 else 0.0
-    left_s = (planned - done) / rate if rate > 0 else 0.0
+def _progress(done: int, planned: int, per_s: float, counts: Counter[str]) -> str:
+    left = f"{(planned - done) / per_s:.0f} s left" if per_s > 0 else "time left unknown"
     failed = done - counts["completed"]
-    return f"{done}/{planned} runs, {rate:.0f}/s, {left_s:.0f} s left, {failed} not completed"
+    return f"{done}/{planned} runs, {per_s:.0f}/s, {left}, {failed} not completed"
 
 
 def _summary(counts: "Counter[str] | dict[str, Any]") -> str:
@@ -102,21 +115,30 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     return int(first), int(count)
 
 
-def _status(study: Path) -> None:
+def _status(study: Path, *, as_json: bool) -> None:
     from ncsim_core.sweep.store import Store
 
     with Store(study, must_exist=True) as store:
         plan, runs = store.current()
-        counts = store.counts()
+        counts, errors = store.counts(), store.errors(SHOWN_ERRORS)
     left = runs - sum(counts.values())
+    if as_json:
+        rows = [dict(zip(("status", "error", "runs"), each, strict=True)) for each in errors]
+        found = {"name": plan.name, "runs": runs, "to_do": left, "counts": counts, "errors": rows}
+        typer.echo(json.dumps(found, indent=2))
+        return
     typer.echo(f"{plan.name}: {runs} runs, {_summary(counts)}, {left} to do")
+    for status, error, count in errors:
+        first, *more = error.splitlines() or [""]
+        typer.echo(f"  {count} {status}: {first[:ERROR_WIDTH]}{' ...' if more else ''}")
 
 
-def _merge(study: Path, others: list[Path]) -> None:
+def _merge(study: Path, others: list[Path], *, as_json: bool) -> None:
     from ncsim_core.sweep.store import Store
 
-    with Store(study) as store:
-        for other in others:
-            with Store(other, must_exist=True) as source:
-                store.merge(source)
-    _status(study)
+    with ExitStack() as open_studies:
+        sources = [open_studies.enter_context(Store(each, must_exist=True)) for each in others]
+        store = open_studies.enter_context(Store(study))
+        for source in sources:
+            store.merge(source)
+    _status(study, as_json=as_json)

@@ -1,10 +1,13 @@
 """Keeps an executor busy with chunks of runs, and finds the run that breaks it.
 
 When workers die, every run that was in flight is a suspect. Suspects are done again one at a
-time, so that the run to blame is known; it becomes a failed row and the sweep goes on.
+time. One whose worker dies twice while nothing else is in flight, or that used up its wall limit,
+is to blame: it becomes a failed row and the sweep goes on. Twice, since a worker may also be killed
+from outside.
 """
 
-from collections import deque
+import time
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from itertools import islice
@@ -21,6 +24,8 @@ FIRST_CHUNK: Final = 4
 MAX_CHUNK: Final = 256
 CHUNKS_PER_WORKER: Final = 2
 START_s: Final = 120.0
+STRIKES: Final = 2
+"""Workers that a run may take with it."""
 
 
 class Dispatcher:
@@ -42,6 +47,8 @@ class Dispatcher:
         self._chunk = FIRST_CHUNK
         self._in_flight: dict[Future[list[ResultRow]], list[Item]] = {}
         self._suspects: deque[Item] = deque()
+        self._strikes: Counter[str] = Counter()
+        self._submitted_s = 0.0
 
     def results(self, items: Iterator[Item]) -> Iterator[list[ResultRow]]:
         """Yield the results of all items, chunk by chunk, in the order in which they come.
@@ -81,6 +88,7 @@ class Dispatcher:
             self._replace_executor()
         else:
             self._in_flight[future] = chunk
+            self._submitted_s = time.monotonic()
 
     def _collected(self, future: "Future[list[ResultRow]]") -> Iterator[list[ResultRow]]:
         chunk = self._in_flight.pop(future)
@@ -94,7 +102,7 @@ class Dispatcher:
 
     def _accused(self, chunk: list[Item], error: Exception) -> Iterator[list[ResultRow]]:
         was_alone = len(chunk) == 1 and not self._in_flight
-        if was_alone:
+        if was_alone and self._is_guilty(chunk[0]):
             yield [self._blamed(chunk[0], error)]
         else:
             self._suspects.extend(chunk)
@@ -106,6 +114,13 @@ class Dispatcher:
             for left in self._in_flight.values():
                 self._suspects.extend(left)
             self._replace_executor()
+
+    def _is_guilty(self, item: Item) -> bool:
+        """Count one more death of a run that was alone; return whether it is to blame for it."""
+        self._strikes[item.key] += 1
+        wall_s = self._limits.wall_s
+        spent_s = time.monotonic() - self._submitted_s
+        return self._strikes[item.key] >= STRIKES or (wall_s is not None and spent_s >= wall_s)
 
     def _blamed(self, item: Item, error: Exception) -> ResultRow:
         wall_s = self._limits.wall_s

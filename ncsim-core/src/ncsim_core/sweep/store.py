@@ -164,6 +164,16 @@ class Store:
         )
         return dict(self._connection.execute(query, (plan.digest,)).fetchall())
 
+    def errors(self, most: int) -> list[tuple[str, str, int]]:
+        """Return status, error and number of runs of the most frequent errors."""
+        plan, _ = self.current()
+        query = (
+            "SELECT status, error, count(*) AS runs FROM member JOIN result "
+            "ON result.key = member.key WHERE plan = ? AND error IS NOT NULL "
+            "GROUP BY status, error ORDER BY runs DESC, status, error LIMIT ?"
+        )
+        return [tuple(row) for row in self._connection.execute(query, (plan.digest, most))]
+
     def merge(self, other: "Store") -> None:
         """Take over all that another study holds."""
         source = other._connection  # noqa: SLF001 - of the same class
