@@ -45,7 +45,7 @@ def test_a_hostile_name_stays_text(trace):
     page = report_html(trace)
 
     assert "<img src=x" not in page
-    assert page.count("</script>") == 3  # the trace, what accompanies it, the viewer
+    assert page.count("</script>") == 4  # the trace, what accompanies it, the viewer, its loader
 
 
 def test_the_viewer_names_no_host(trace):

@@ -1,13 +1,19 @@
 /** What all views share; they are pure functions of it, and it is the hash of the address. */
 
-export type ViewId =
-  | "overview" | "gantt" | "topology" | "rates" | "cascade" | "replay" | "dag" | "compare" | "sweep"
-  | "configure" | "events" | "parameters";
+export const VIEW_IDS = [
+  "overview", "gantt", "topology", "rates", "cascade", "replay", "dag", "compare", "events", "parameters", "sweep",
+  "configure", "runs",
+] as const;
+export type ViewId = (typeof VIEW_IDS)[number];
 
-export type SelectionKind = "task" | "transfer" | "link" | "node" | "recalc";
+export type SelectionKind = "task" | "transfer" | "link" | "node" | "recalc" | "row";
 export interface Selection { kind: SelectionKind; id: number }
 
-export type LaneMode = "node" | "link" | "dag" | "transfer";
+export const LANE_MODES = ["node", "link", "dag", "transfer"] as const;
+export type LaneMode = (typeof LANE_MODES)[number];
+
+/** Columns, rows and measure of a heat map. */
+export type Heat = [string, string, string];
 
 export interface Ui {
   view: ViewId;
@@ -21,7 +27,9 @@ export interface Ui {
   lanes: LaneMode;
   /** Lanes in order of what they carry, busiest first. */
   byLoad: boolean;
+  /** Whether all lanes are pressed into the height of the screen. */
   fit: boolean;
+  /** DAG number; -1 shows every DAG. */
   dag: number;
   /** Whether the binding chain is outlined. */
   chain: boolean;
@@ -30,24 +38,33 @@ export interface Ui {
   asTable: boolean;
   theme: "light" | "dark" | "auto";
   playing: boolean;
+  /** Whether a replay starts again at the end of the window. */
+  loop: boolean;
   /** A replay takes this many seconds for the whole run. */
   replaySeconds: number;
   search: string;
   help: boolean;
+  /** Run that a server shows, by its path; empty in a report. */
+  path: string;
+  /** Run that it is compared with. */
+  against: string;
+  /** Study that a server shows. */
+  study: string;
+  /** Part of a study that is shown. */
+  sheet: number;
+  /** Two factors and the measure of a study's maps and curves. */
+  heat: Heat | null;
 }
 
 export const START: Ui = {
   view: "overview", event: -1, time: 0, window: null, selection: null, lanes: "node", byLoad: false, fit: false,
-  dag: 0, chain: false, conflicts: true, load: false, asTable: false, theme: "auto", playing: false,
-  replaySeconds: 20, search: "", help: false,
+  dag: 0, chain: false, conflicts: true, load: false, asTable: false, theme: "auto", playing: false, loop: false,
+  replaySeconds: 20, search: "", help: false, path: "", against: "", study: "", sheet: 0, heat: null,
 };
 
-export const VIEW_IDS: ViewId[] = [
-  "overview", "gantt", "topology", "rates", "cascade", "replay", "dag", "compare", "sweep", "configure", "events",
-  "parameters",
-];
-const LANE_MODES: LaneMode[] = ["node", "link", "dag", "transfer"];
-const SELECTION_LETTERS: Record<SelectionKind, string> = { task: "t", transfer: "x", link: "l", node: "n", recalc: "r" };
+const LETTERS: Record<SelectionKind, string> = { task: "t", transfer: "x", link: "l", node: "n", recalc: "r", row: "w" };
+const FLAGS = [["o", "byLoad"], ["f", "fit"], ["c", "chain"], ["r", "load"], ["a", "asTable"], ["y", "loop"]] as const;
+const TEXTS = [["q", "search"], ["p", "path"], ["b", "against"], ["u", "study"]] as const;
 
 /** The state as the hash of an address, without what is not worth a link. */
 export function hashOf(ui: Ui): string {
@@ -55,17 +72,16 @@ export function hashOf(ui: Ui): string {
   parts.set("v", ui.view);
   if (ui.event >= 0) parts.set("e", String(ui.event));
   if (ui.window) parts.set("w", ui.window.map((each) => Math.round(each)).join("-"));
-  if (ui.selection) parts.set("s", SELECTION_LETTERS[ui.selection.kind] + ui.selection.id);
+  if (ui.selection) parts.set("s", LETTERS[ui.selection.kind] + ui.selection.id);
   if (ui.lanes !== "node") parts.set("l", ui.lanes);
-  if (ui.byLoad) parts.set("o", "1");
-  if (ui.fit) parts.set("f", "1");
-  if (ui.dag) parts.set("d", String(ui.dag));
-  if (ui.chain) parts.set("c", "1");
+  if (ui.dag) parts.set("d", ui.dag < 0 ? "all" : String(ui.dag));
   if (!ui.conflicts) parts.set("x", "0");
-  if (ui.load) parts.set("r", "1");
-  if (ui.asTable) parts.set("a", "1");
   if (ui.theme !== "auto") parts.set("t", ui.theme);
-  if (ui.search) parts.set("q", ui.search);
+  if (ui.replaySeconds !== START.replaySeconds) parts.set("n", String(ui.replaySeconds));
+  if (ui.sheet) parts.set("h", String(ui.sheet));
+  if (ui.heat) parts.set("m", JSON.stringify(ui.heat));
+  for (const [letter, name] of FLAGS) if (ui[name]) parts.set(letter, "1");
+  for (const [letter, name] of TEXTS) if (ui[name]) parts.set(letter, ui[name]);
   return parts.toString();
 }
 
@@ -79,29 +95,39 @@ export function fromHash(hash: string): Partial<Ui> {
   };
   const view = parts.get("v") as ViewId;
   if (VIEW_IDS.includes(view)) found.view = view;
-  const event = whole("e");
-  if (event !== null) found.event = event;
+  found.event = whole("e") ?? START.event;
   const window = /^(\d+)-(\d+)$/.exec(parts.get("w") ?? "");
-  if (window && Number(window[2]) > Number(window[1])) found.window = [Number(window[1]), Number(window[2])];
-  const selection = /^([txlnr])(\d+)$/.exec(parts.get("s") ?? "");
-  if (selection) {
-    const kind = (Object.keys(SELECTION_LETTERS) as SelectionKind[]).find((each) => SELECTION_LETTERS[each] === selection[1]);
-    if (kind) found.selection = { kind, id: Number(selection[2]) };
-  }
+  found.window = window && Number(window[2]) > Number(window[1]) ? [Number(window[1]), Number(window[2])] : null;
+  found.selection = selectionIn(parts.get("s") ?? "");
   const lanes = parts.get("l") as LaneMode;
-  if (LANE_MODES.includes(lanes)) found.lanes = lanes;
-  found.byLoad = parts.get("o") === "1";
-  found.fit = parts.get("f") === "1";
-  found.dag = whole("d") ?? 0;
-  found.chain = parts.get("c") === "1";
+  found.lanes = LANE_MODES.includes(lanes) ? lanes : START.lanes;
+  found.dag = parts.get("d") === "all" ? -1 : (whole("d") ?? 0);
   found.conflicts = parts.get("x") !== "0";
-  found.load = parts.get("r") === "1";
-  found.asTable = parts.get("a") === "1";
   const theme = parts.get("t");
   if (theme === "light" || theme === "dark") found.theme = theme;
-  const search = parts.get("q");
-  if (search) found.search = search.slice(0, 200);
+  found.replaySeconds = Math.max(1, Math.min(3600, whole("n") ?? START.replaySeconds));
+  found.sheet = whole("h") ?? 0;
+  found.heat = heatIn(parts.get("m"));
+  for (const [letter, name] of FLAGS) found[name] = parts.get(letter) === "1";
+  for (const [letter, name] of TEXTS) found[name] = (parts.get(letter) ?? "").slice(0, 500);
   return found;
+}
+
+function selectionIn(text: string): Selection | null {
+  const found = /^([txlnrw])(\d{1,15})$/.exec(text);
+  const kinds = Object.keys(LETTERS) as SelectionKind[];
+  const kind = found ? kinds.find((each) => LETTERS[each] === found[1]) : undefined;
+  return found && kind ? { kind, id: Number(found[2]) } : null;
+}
+
+function heatIn(text: string | null): Heat | null {
+  try {
+    const found: unknown = JSON.parse(text ?? "null");
+    const isHeat = Array.isArray(found) && found.length === 3 && found.every((each) => typeof each === "string");
+    return isHeat ? (found as Heat) : null;
+  } catch {
+    return null;
+  }
 }
 
 type Listener = () => void;

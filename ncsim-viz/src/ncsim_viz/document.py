@@ -15,6 +15,7 @@ from ncsim_core.trace.reader import GZIP_MAGIC
 from ncsim_core.trace.records import TraceError
 
 from ncsim_viz.extras import comparison_of, extras_of
+from ncsim_viz.packing import packed
 
 PLACEHOLDER: Final = "<!--NCSIM-DATA-->"
 TRACE_TYPE: Final = "application/x-ncsim-trace"
@@ -44,7 +45,7 @@ def report_html(source: Path, other: Path | None = None) -> str:
     elements.append(_element(EXTRAS_TYPE, payload))
     page = viewer_html().replace(PLACEHOLDER, "\n".join(elements), 1)
     title = html.escape(run.header.scenario or source.name)
-    return page.replace("<title>ncsim viewer</title>", f"<title>{title} - ncsim</title>", 1)
+    return packed(page.replace("<title>ncsim viewer</title>", f"<title>{title} - ncsim</title>", 1))
 
 
 def viewer_html() -> str:

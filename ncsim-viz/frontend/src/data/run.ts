@@ -60,6 +60,8 @@ export class Run {
   lines = 0;
   /** Records of kinds that this reader does not know. */
   ignored = 0;
+  /** Whether records may still follow. */
+  isLive = false;
 
   evTime!: F64; evKind!: U8; evArg!: I32; evLine!: I32;
   tkDag!: I32; tkCost!: F64; tkNode!: I32; tkReady!: I32; tkStart!: I32; tkEnd!: I32;
@@ -92,6 +94,9 @@ export class Run {
   createdAt(transfer: number): number { return this.endedAt(this.exSource.data[transfer]); }
   servedFrom(transfer: number): number { return this.timeOf(this.exStart.data[transfer]); }
   servedTo(transfer: number): number { return this.timeOf(this.exEnd.data[transfer]); }
+
+  /** When its data is at the node of the waiting task: NaN until then. */
+  arrivedAt(transfer: number): number { return this.isLocal(transfer) ? this.createdAt(transfer) : this.servedTo(transfer); }
 
   /** Last event at or before an instant; -1 before the first. */
   eventAt(time: number): number { return upperBound(this.evTime.data, this.events, time) - 1; }

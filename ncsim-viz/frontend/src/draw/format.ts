@@ -10,6 +10,10 @@ export function seconds(us: number, window = 0): string {
 
 export const time = (us: number, window = 0): string => `${seconds(us, window)} s`;
 
+/** Seconds with the digits that ticks at a distance of so many microseconds need. */
+export const tickSeconds = (us: number, step_us: number): string =>
+  (us / 1e6).toFixed(Math.max(0, Math.min(6, Math.ceil(-Math.log10(step_us / 1e6) - 1e-9))));
+
 /** A number with at most `digits` significant digits. */
 export function number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
@@ -34,8 +38,8 @@ export function ticks(from: number, to: number, wanted: number): number[] {
   return found;
 }
 
-export function csvOf(columns: string[], rows: (string | number | null)[][]): string {
-  const cell = (value: string | number | null): string => {
+export function csvOf(columns: string[], rows: (string | number | boolean | null)[][]): string {
+  const cell = (value: string | number | boolean | null): string => {
     let text = value === null ? "" : String(value);
     if (typeof value === "string" && /^[=+\-@\t]/.test(text)) text = `'${text}`; // no formulas in spreadsheets
     return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

@@ -22,7 +22,8 @@ export interface Lane {
 /** Busy share and dominant colour of a lane per bin; a coarser level has a quarter of the bins. */
 interface Level { bins: number; busy: Uint8Array; colour: Uint8Array }
 
-const MAX_SUBLANES = 4;
+/** Sublanes of a group: many where few intervals are to be told apart, few where pixels are drawn anyway. */
+const MAX_SUBLANES = { few: 40, many: 4 };
 
 export class Lanes {
   readonly lanes: Lane[] = [];
@@ -35,6 +36,7 @@ export class Lanes {
   /** DAG number: the category. */
   readonly category: U8 = u8();
   private levels: Level[] | null = null;
+  private readonly shades: Uint8Array;
 
   constructor(private readonly run: Run, readonly mode: LaneMode, byLoad: boolean) {
     const groups = this.groups();
@@ -44,9 +46,17 @@ export class Lanes {
       groups.sort((a, b) => (loads.get(b) as number) - (loads.get(a) as number));
     }
     for (const group of groups) this.place(group);
+    let shade = 0;
+    this.shades = Uint8Array.from(this.lanes, (lane, i) => {
+      if (i === 0 || lane.owner !== this.lanes[i - 1].owner) shade = 1 - shade;
+      return shade;
+    });
   }
 
   get intervals(): number { return this.start.length; }
+
+  /** Whether a lane's ground is shaded, so that groups are told apart. */
+  shaded(index: number): boolean { return this.shades[index] === 1; }
 
   /** Intervals of a lane that touch a window: `[first, last)` of which some may end before it. */
   range(lane: Lane, from: number, to: number): [number, number] {
@@ -191,13 +201,14 @@ export class Lanes {
 
   /** Spread a group over sublanes in which nothing overlaps, as far as there are enough. */
   private place(group: Group): void {
+    const most = this.run.transfers > MANY ? MAX_SUBLANES.many : MAX_SUBLANES.few;
     group.spans.sort((a, b) => a.from - b.from || a.to - b.to);
     const rows: Span[][] = [[]];
     const ends: number[] = [-1];
     for (const span of group.spans) {
       let row = ends.findIndex((end) => end <= span.from);
       if (row < 0) {
-        if (rows.length < MAX_SUBLANES) row = rows.push([]) - 1;
+        if (rows.length < most) row = rows.push([]) - 1;
         else row = rows.length - 1;
       }
       rows[row].push(span);

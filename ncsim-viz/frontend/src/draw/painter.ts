@@ -15,6 +15,8 @@ export interface Painter {
   /** Text with its vertical middle at y. */
   text(x: number, y: number, text: string, style: TextStyle): void;
   clip(x: number, y: number, width: number, height: number, body: () => void): void;
+  /** Draw with the origin elsewhere, and turned by some degrees clockwise. */
+  shift(x: number, y: number, body: () => void, degrees?: number): void;
   /** Pixels, stretched over a box; both back ends take a canvas. */
   image(x: number, y: number, width: number, height: number, source: HTMLCanvasElement): void;
 }
@@ -34,9 +36,25 @@ export function widthOf(text: string, size = 11, bold = false): number {
   return ruler.measureText(text).width;
 }
 
+const widths = new Map<string, number>();
+const MAX_WIDTHS = 20000;
+
+/** Width of a text, remembered: measuring is what drawing many labels costs. */
+function knownWidth(text: string, size: number): number {
+  const key = `${size}${text}`;
+  let width = widths.get(key);
+  if (width === undefined) {
+    if (widths.size > MAX_WIDTHS) widths.clear();
+    width = widthOf(text, size);
+    widths.set(key, width);
+  }
+  return width;
+}
+
 /** Text cut to a width, with an ellipsis; empty if not even two letters fit. */
 export function fitted(text: string, width: number, size = 11): string {
-  if (widthOf(text, size) <= width) return text;
+  if (width < size) return "";
+  if (knownWidth(text, size) <= width) return text;
   let low = 0;
   let high = text.length;
   while (low < high) {
@@ -124,6 +142,14 @@ export class CanvasPainter implements Painter {
     this.c.restore();
   }
 
+  shift(x: number, y: number, body: () => void, degrees = 0): void {
+    this.c.save();
+    this.c.translate(x, y);
+    this.c.rotate((degrees * Math.PI) / 180);
+    body();
+    this.c.restore();
+  }
+
   image(x: number, y: number, width: number, height: number, source: HTMLCanvasElement): void {
     this.c.imageSmoothingEnabled = false;
     this.c.drawImage(source, x, y, width, height);
@@ -188,6 +214,12 @@ export class SvgPainter implements Painter {
     this.parts.push(
       `<clipPath id="${id}"><rect x="${short(x)}" y="${short(y)}" width="${short(Math.max(0, width))}" height="${short(Math.max(0, height))}"/></clipPath><g clip-path="url(#${id})">`,
     );
+    body();
+    this.parts.push("</g>");
+  }
+
+  shift(x: number, y: number, body: () => void, degrees = 0): void {
+    this.parts.push(`<g transform="translate(${short(x)} ${short(y)})${degrees ? ` rotate(${short(degrees)})` : ""}">`);
     body();
     this.parts.push("</g>");
   }

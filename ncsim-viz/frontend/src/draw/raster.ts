@@ -6,28 +6,43 @@ import { pixelOf, type Palette } from "./palette";
 
 export interface Row { lane: Lane; index: number; top: number; height: number }
 
+/** What is shown: the window of time, the first pixel row, and the end of the run. */
+export interface Part { from: number; to: number; top: number; whole: number }
+
+let scratch: { canvas: HTMLCanvasElement; pen: CanvasRenderingContext2D; image: ImageData } | null = null;
+
+/** Lanes of a window as an image; the canvas is the same from call to call as long as the size is. */
+export function rasterImage(width: number, height: number, lanes: Lanes, rows: Row[], part: Part, colours: Palette): HTMLCanvasElement {
+  const [w, h] = [Math.max(1, width), Math.max(1, height)];
+  if (scratch?.canvas.width !== w || scratch.canvas.height !== h) {
+    const canvas = document.createElement("canvas");
+    canvas.width = w;
+    canvas.height = h;
+    const pen = canvas.getContext("2d") as CanvasRenderingContext2D;
+    scratch = { canvas, pen, image: pen.createImageData(w, h) };
+  }
+  rasterize(new Uint32Array(scratch.image.data.buffer), w, lanes, rows, part, colours);
+  scratch.pen.putImageData(scratch.image, 0, 0);
+  return scratch.canvas;
+}
+
 /** Fill `pixels` (one per cell, `width` a row) with the lanes of a window. */
-export function rasterize(
-  pixels: Uint32Array, width: number, lanes: Lanes, rows: Row[], from: number, to: number, whole: number, colours: Palette,
-): void {
+export function rasterize(pixels: Uint32Array, width: number, lanes: Lanes, rows: Row[], part: Part, colours: Palette): void {
   const palette = colours.categories.map(pixelOf);
   const line = new Uint32Array(width);
+  const height = pixels.length / width;
   pixels.fill(0);
-  const binsInWindow = ((to - from) / Math.max(1, whole)) * BINS;
+  const binsInWindow = ((part.to - part.from) / Math.max(1, part.whole)) * BINS;
   for (const row of rows) {
     line.fill(0);
-    if (binsInWindow >= width) fromPyramid(line, width, lanes, row, from, to, whole, palette);
-    else fromIntervals(line, width, lanes, row, from, to, palette);
-    for (let y = Math.max(0, row.top); y < row.top + row.height; y++) {
-      const at = y * width;
-      if (at + width <= pixels.length) pixels.set(line, at);
-    }
+    if (binsInWindow >= width) fromPyramid(line, width, lanes, row, part, palette);
+    else fromIntervals(line, width, lanes, row, part, palette);
+    const [first, last] = [Math.round(row.top - part.top), Math.round(row.top + row.height - part.top)];
+    for (let y = Math.max(0, first); y < Math.min(height, last); y++) pixels.set(line, y * width);
   }
 }
 
-function fromPyramid(
-  line: Uint32Array, width: number, lanes: Lanes, row: Row, from: number, to: number, whole: number, palette: number[],
-): void {
+function fromPyramid(line: Uint32Array, width: number, lanes: Lanes, row: Row, { from, to, whole }: Part, palette: number[]): void {
   const level = lanes.level(Math.ceil((width * whole) / (to - from)));
   const perPixel = (((to - from) / whole) * level.bins) / width;
   const first = (from / whole) * level.bins;
@@ -50,9 +65,7 @@ function fromPyramid(
   }
 }
 
-function fromIntervals(
-  line: Uint32Array, width: number, lanes: Lanes, row: Row, from: number, to: number, palette: number[],
-): void {
+function fromIntervals(line: Uint32Array, width: number, lanes: Lanes, row: Row, { from, to }: Part, palette: number[]): void {
   const perUs = width / (to - from);
   const [first, last] = lanes.range(row.lane, from, to);
   for (let i = first; i < last; i++) {

@@ -1,96 +1,127 @@
 /** Who did what when: per node tasks above and outgoing transfers below. */
 
-import { timeAxis, xOf, timeOf, type Scale } from "../draw/axis";
+import { playhead, timeAxis, timeOf, xOf, type Scale } from "../draw/axis";
+import { count, number, seconds } from "../draw/format";
 import { MANY, type Lane, type Lanes } from "../draw/lanes";
-import { fitted, type Painter } from "../draw/painter";
-import { rasterize, type Row } from "../draw/raster";
-import { count, seconds } from "../draw/format";
-import { chainSets, limited } from "./names";
-import type { Box, Context, View } from "./view";
+import { fitted, hatch, type Painter } from "../draw/painter";
+import { rasterImage, type Row } from "../draw/raster";
+import { chainSets, limited, rateAt, type ChainSets } from "./names";
+import type { Box, Context, Table, View } from "./view";
 
 const LEFT = 110;
 const TOP = 24;
+const BELOW = 8;
+/** Above so many intervals in the window, pixels are drawn instead of shapes. */
 export const PAINTED = 3000;
 
-const laneHeight = (ctx: Context, lanes: Lanes): number =>
-  ctx.ui.fit ? Math.max(2, Math.min(20, 560 / lanes.lanes.length)) : lanes.intervals > MANY ? 12 : 20;
+const lanesOf = (ctx: Context): Lanes => ctx.lanesOf(ctx.ui.lanes);
+
+/** Height of a lane: enough to read, more where there is room, and as little as it takes to fit. */
+function laneHeight(ctx: Context, lanes: Lanes, room: number): number {
+  const share = (room - TOP - BELOW) / Math.max(1, lanes.lanes.length);
+  const least = ctx.ui.fit ? 1 : lanes.intervals > MANY ? 12 : 20;
+  return Math.max(least, Math.min(ctx.ui.fit ? 20 : 30, share));
+}
 
 const scaleOf = (ctx: Context, box: Box): Scale =>
   ({ from: ctx.window[0], to: ctx.window[1], left: LEFT, right: box.width - 12 });
 
-function rowsOf(ctx: Context, lanes: Lanes): Row[] {
-  const height = laneHeight(ctx, lanes);
-  return lanes.lanes.map((lane, index) => ({ lane, index, top: Math.round(TOP + index * height), height: Math.max(1, Math.round(height) - 1) }));
+/** The rows of the seen part. */
+function rowsOf(lanes: Lanes, box: Box, height: number): Row[] {
+  const first = Math.max(0, Math.floor((box.top - TOP) / height) - 1);
+  const last = Math.min(lanes.lanes.length, Math.ceil((box.bottom - TOP) / height) + 1);
+  const rows: Row[] = [];
+  for (let index = first; index < last; index++) {
+    const top = Math.round(TOP + index * height);
+    rows.push({ lane: lanes.lanes[index], index, top, height: Math.max(1, Math.round(TOP + (index + 1) * height) - top - 1) });
+  }
+  return rows;
 }
+
+/** Drawings and hits share the height that `height` gave: the box has it. */
+const heightIn = (ctx: Context, lanes: Lanes, box: Box): number => laneHeight(ctx, lanes, box.height);
 
 function draw(p: Painter, ctx: Context, box: Box): void {
-  const { colours } = ctx;
-  const lanes = ctx.lanesOf(ctx.ui.lanes);
-  const rows = rowsOf(ctx, lanes);
+  const lanes = lanesOf(ctx);
+  const rows = rowsOf(lanes, box, heightIn(ctx, lanes, box));
   const s = scaleOf(ctx, box);
-  let owner = -1;
-  let shade = false;
-  for (const row of rows) {
-    if (row.lane.owner !== owner) {
-      owner = row.lane.owner;
-      shade = !shade;
-    }
-    if (shade) p.rect(0, row.top, box.width, row.height + 1, { fill: colours.lane });
-    if (row.lane.isFirst && row.height > 7) {
-      const name = row.lane.label || (row.lane.isTasks ? "" : "transfers ↗");
-      p.text(row.lane.label ? 8 : 18, row.top + row.height / 2, fitted(name, LEFT - 20),
-        { fill: row.lane.label ? colours.ink : colours.muted, size: row.lane.label ? 12 : 10, bold: row.lane.isTasks });
-    }
-  }
-  timeAxis(p, s, 0, box.height, colours);
-  if (lanes.countIn(lanes.lanes, s.from, s.to, PAINTED) > PAINTED) paintPixels(p, ctx, lanes, rows, s, box);
-  else p.clip(LEFT, TOP, s.right - LEFT, box.height, () => rows.forEach((row) => paintRow(p, ctx, lanes, row, s)));
-  const x = xOf(s, ctx.ui.time);
-  if (ctx.ui.event >= 0 && x >= LEFT && x <= s.right) p.line([x, 0, x, box.height], { stroke: colours.select, width: 1.5 });
+  rows.forEach((row) => ground(p, ctx, lanes, row, box));
+  timeAxis(p, s, box.top, box.bottom, ctx.colours);
+  if (!lanes.lanes.length) p.text(LEFT, TOP + 20, "Nothing has run yet.", { fill: ctx.colours.muted, size: 13 });
+  p.clip(LEFT, box.top + TOP - 4, s.right - LEFT, box.bottom - box.top, () => {
+    const isMany = lanes.countIn(rows.map((row) => row.lane), s.from, s.to, PAINTED) > PAINTED;
+    if (isMany) {
+      const height = Math.ceil(box.bottom - box.top);
+      const image = rasterImage(Math.floor(s.right - s.left), height, lanes, rows, { ...s, top: box.top, whole: ctx.run.end }, ctx.colours);
+      p.image(s.left, box.top, image.width, height, image);
+      paintMarked(p, ctx, lanes, rows, s);
+    } else rows.forEach((row) => paintRow(p, ctx, lanes, row, s));
+    paintTrigger(p, ctx, s, box);
+  });
 }
 
-function paintPixels(p: Painter, ctx: Context, lanes: Lanes, rows: Row[], s: Scale, box: Box): void {
-  const width = Math.max(1, Math.floor(s.right - s.left));
-  const height = Math.max(1, Math.ceil(box.height));
-  const canvas = document.createElement("canvas");
-  canvas.width = width;
-  canvas.height = height;
-  const pen = canvas.getContext("2d") as CanvasRenderingContext2D;
-  const image = pen.createImageData(width, height);
-  rasterize(new Uint32Array(image.data.buffer), width, lanes, rows, s.from, s.to, ctx.run.end, ctx.colours);
-  pen.putImageData(image, 0, 0);
-  p.image(s.left, 0, width, height, canvas);
+function ground(p: Painter, ctx: Context, lanes: Lanes, row: Row, box: Box): void {
+  const { colours, marks, ui } = ctx;
+  const { lane } = row;
+  if (lanes.shaded(row.index)) p.rect(0, row.top, box.width, row.height + 1, { fill: colours.lane });
+  if (!lane.isFirst || row.height < 8) return;
+  const isMarked = (ui.lanes === "node" && marks.nodes.has(lane.owner)) || (ui.lanes === "link" && marks.links.has(lane.owner));
+  const size = Math.min(12, row.height);
+  const fill = isMarked ? colours.select : lane.label ? colours.ink : colours.muted;
+  const middle = row.top + row.height / 2;
+  if (lane.label) p.text(8, middle, fitted(lane.label, LEFT - 20, size), { fill, size, bold: true });
+  else if (!lane.isTasks && row.height >= 10) p.text(18, middle, "sends", { fill: colours.muted, size: 10 });
 }
 
 function paintRow(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale): void {
-  const { run, colours, ui } = ctx;
   const [first, last] = lanes.range(row.lane, s.from, s.to);
-  const chain = ui.chain ? chainSets(ctx) : null;
-  for (let i = first; i < last; i++) {
-    const id = lanes.id.data[i];
-    const x0 = xOf(s, lanes.start.data[i]);
-    const width = Math.max(1, xOf(s, lanes.end.data[i]) - x0);
-    const category = lanes.category.data[i] % colours.categories.length;
-    const fill = colours.categories[category];
-    const middle = row.top + row.height / 2;
-    if (row.lane.isTasks) {
-      const ready = run.readyAt(id);
-      if (ready < lanes.start.data[i]) p.line([xOf(s, ready), middle, x0, middle], { stroke: colours.muted, dash: [2, 2] });
-      p.rect(x0, row.top, width, row.height, { fill });
-      const name = fitted(run.taskName(id), width - 4);
-      if (name) p.text(x0 + width / 2, middle, name, { fill: colours.onCategory[category], size: 11, anchor: "middle" });
-    } else paintTransfer(p, ctx, row, s, id, x0, width, fill);
-    const isSelected = ui.selection?.id === id && ui.selection.kind === (row.lane.isTasks ? "task" : "transfer");
-    const isChain = chain && (row.lane.isTasks ? chain.tasks : chain.transfers).has(id);
-    if (isChain) p.rect(x0, row.top, width, row.height, { stroke: colours.bind, width: 2, dash: [5, 2] });
-    if (isSelected) p.rect(x0, row.top, width, row.height, { stroke: colours.select, width: 3 });
+  const chain = ctx.ui.chain ? chainSets(ctx) : null;
+  for (let i = first; i < last; i++) paintOne(p, ctx, lanes, row, s, i, chain);
+}
+
+function paintOne(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i: number, chain: ChainSets | null): void {
+  const { colours, marks } = ctx;
+  const id = lanes.id.data[i];
+  const x0 = xOf(s, lanes.start.data[i]);
+  const width = Math.max(1, xOf(s, lanes.end.data[i]) - x0);
+  if (row.lane.isTasks) paintTask(p, ctx, lanes, row, s, i, x0, width);
+  else paintTransfer(p, ctx, row, s, id, x0, width);
+  if (chain && (row.lane.isTasks ? chain.tasks : chain.transfers).has(id)) {
+    p.rect(x0 + 1, row.top + 1, Math.max(1, width - 2), row.height - 2, { stroke: colours.bind, width: 2, dash: [5, 2] });
+  }
+  if ((row.lane.isTasks ? marks.tasks : marks.transfers).has(id)) p.rect(x0, row.top, width, row.height, { stroke: colours.select, width: 2.5 });
+}
+
+/** Among pixels, what is selected is still outlined. */
+function paintMarked(p: Painter, ctx: Context, lanes: Lanes, rows: Row[], s: Scale): void {
+  for (const row of rows) {
+    const marked = row.lane.isTasks ? ctx.marks.tasks : ctx.marks.transfers;
+    if (!marked.size) continue;
+    const [first, last] = lanes.range(row.lane, s.from, s.to);
+    for (let i = first; i < last; i++) if (marked.has(lanes.id.data[i])) paintOne(p, ctx, lanes, row, s, i, null);
   }
 }
 
-/** A transfer's bar is filled to the height of rate over solo rate: cascades show as steps. */
-function paintTransfer(p: Painter, ctx: Context, row: Row, s: Scale, x: number, x0: number, width: number, fill: string): void {
+function paintTask(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i: number, x0: number, width: number): void {
   const { run, colours } = ctx;
-  p.rect(x0, row.top, width, row.height, { fill, alpha: 0.22 });
+  const id = lanes.id.data[i];
+  const category = lanes.category.data[i];
+  const shade = category % colours.categories.length;
+  const middle = row.top + row.height / 2;
+  const ready = run.readyAt(id);
+  if (ready < lanes.start.data[i]) p.line([xOf(s, ready), middle, x0, middle], { stroke: colours.muted, dash: [2, 2] });
+  p.rect(x0, row.top, width, row.height, { fill: colours.categories[shade] });
+  if (category >= colours.categories.length) hatch(p, x0, row.top, width, row.height, colours.paper, 6);
+  if (width > 3) p.line([x0 + width - 0.5, row.top, x0 + width - 0.5, row.top + row.height], { stroke: colours.paper });
+  const name = fitted(run.taskName(id), width - 3, 11) || fitted(run.taskName(id), width - 2, 9);
+  if (name) p.text(x0 + width / 2, middle, name, { fill: colours.onCategory[shade], size: width > 30 ? 11 : 9, anchor: "middle" });
+}
+
+/** A transfer's bar is filled to the height of rate over solo rate: cascades show as steps. */
+function paintTransfer(p: Painter, ctx: Context, row: Row, s: Scale, x: number, x0: number, width: number): void {
+  const { run, colours } = ctx;
+  const fill = colours.categories[run.exDag.data[x] % colours.categories.length];
+  p.rect(x0, row.top, width, row.height, { fill, alpha: 0.2 });
   const solo = run.soloRate(x) || 1;
   const end = x0 + width;
   const steps = run.stepsOf(x);
@@ -99,37 +130,79 @@ function paintTransfer(p: Painter, ctx: Context, row: Row, s: Scale, x: number, 
     const to = k + 1 < steps.length ? xOf(s, run.stepTime(steps[k + 1])) : end;
     const height = row.height * Math.min(1, run.stRate.data[step] / solo);
     p.rect(from, row.top + row.height - height, Math.max(0, to - from), height, { fill });
+    if (run.stRate.data[step] === 0) hatch(p, from, row.top, Math.max(0, to - from), row.height, colours.bad, 6);
   });
   const name = fitted(run.transferName(x), width - 6, 10);
-  if (name) p.text(x0 + width / 2, row.top + row.height / 2, name, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
+  if (name) p.text(Math.max(x0, s.left) + 4, row.top + row.height / 2, name, { fill: colours.ink, size: 10, halo: colours.paper });
 }
 
-const laneAt = (ctx: Context, lanes: Lanes, y: number): Lane | undefined =>
-  rowsOf(ctx, lanes).find((row) => y >= row.top && y < row.top + row.height + 1)?.lane;
+/** The selected recalculation: where its trigger stands in time. */
+function paintTrigger(p: Painter, ctx: Context, s: Scale, box: Box): void {
+  const { run, ui, colours } = ctx;
+  if (ui.selection?.kind !== "recalc") return;
+  const x = xOf(s, run.timeOf(run.rcEvent.data[ui.selection.id]));
+  p.line([x, box.top + TOP, x, box.bottom], { stroke: colours.ink, dash: [2, 3] });
+  p.text(x + 4, box.top + TOP + 6, run.rcIsStart.data[ui.selection.id] ? "▲" : "●", { fill: colours.ink, size: 10, halo: colours.paper });
+}
+
+function laneAt(ctx: Context, lanes: Lanes, box: Box, y: number): Lane | undefined {
+  return lanes.lanes[Math.floor((y - TOP) / heightIn(ctx, lanes, box))];
+}
+
+/** Interval under a point: its lane and number, or null. */
+function intervalAt(ctx: Context, box: Box, x: number, y: number): { lane: Lane; id: number } | null {
+  const lanes = lanesOf(ctx);
+  const lane = laneAt(ctx, lanes, box, y);
+  const s = scaleOf(ctx, box);
+  if (!lane || x < LEFT || y < box.top + TOP - 4) return null;
+  const found = lanes.hit(lane, timeOf(s, x), (2 * (s.to - s.from)) / (s.right - s.left));
+  return found < 0 ? null : { lane, id: lanes.id.data[found] };
+}
+
+function table(ctx: Context): Table {
+  const { run } = ctx;
+  const at = (value: number): string | null => (Number.isNaN(value) ? null : seconds(value));
+  const inWindow = (from: number, to: number): boolean => !(from > ctx.window[1] || to < ctx.window[0]);
+  const tasks = Array.from({ length: run.tasks }, (_, i) => i).filter((i) => inWindow(run.startedAt(i), run.endedAt(i)));
+  const transfers = Array.from({ length: run.transfers }, (_, x) => x).filter((x) => !run.isLocal(x) && inWindow(run.servedFrom(x), run.servedTo(x)));
+  const node = (task: number): string | null => run.nodes[run.tkNode.data[task]]?.id ?? null;
+  return {
+    columns: ["what", "kind", "node", "to", "ready or created s", "started s", "ended s"],
+    ...limited([...tasks, ...transfers], (id, i) => (i < tasks.length
+      ? [run.taskName(id), "task", node(id), null, at(run.readyAt(id)), at(run.startedAt(id)), at(run.endedAt(id))]
+      : [run.transferName(id), "transfer", node(run.exSource.data[id]), node(run.exTarget.data[id]), at(run.createdAt(id)), at(run.servedFrom(id)), at(run.servedTo(id))])),
+    pick: (row) => (row < tasks.length ? { kind: "task", id: tasks[row] } : { kind: "transfer", id: transfers[row - tasks.length] }),
+  };
+}
 
 export const gantt: View = {
   id: "gantt",
   title: "Gantt",
+  key: "2",
   summary: (ctx) => `Gantt chart: ${count(ctx.run.tasks, "task")} and ${count(ctx.run.transfers, "dependency", "dependencies")} on ${count(ctx.run.nodes.length, "node")}; a transfer's bar is as high as its share of the rate it would have alone`,
-  height: (ctx) => TOP + ctx.lanesOf(ctx.ui.lanes).lanes.length * laneHeight(ctx, ctx.lanesOf(ctx.ui.lanes)) + 8,
+  height: (ctx, _width, room) => TOP + lanesOf(ctx).lanes.length * laneHeight(ctx, lanesOf(ctx), room) + BELOW,
   draw,
+  overlay: (p, ctx, box) => {
+    if (ctx.ui.event >= 0) playhead(p, scaleOf(ctx, box), ctx.ui.time, box.top, box.bottom, ctx.colours);
+  },
   scale: scaleOf,
   hit(ctx, box, x, y) {
-    const lanes = ctx.lanesOf(ctx.ui.lanes);
-    const lane = laneAt(ctx, lanes, y);
-    const s = scaleOf(ctx, box);
-    if (!lane || x < LEFT) return null;
-    const found = lanes.hit(lane, timeOf(s, x), (2 * (s.to - s.from)) / (s.right - s.left));
-    return found < 0 ? null : { kind: lane.isTasks ? "task" : "transfer", id: lanes.id.data[found] };
+    const found = intervalAt(ctx, box, x, y);
+    if (found) return { kind: found.lane.isTasks ? "task" : "transfer", id: found.id };
+    const lane = x < LEFT && y > box.top + TOP ? laneAt(ctx, lanesOf(ctx), box, y) : undefined;
+    if (!lane || ctx.ui.lanes === "dag") return null;
+    return { kind: ctx.ui.lanes, id: lane.owner };
   },
-  table(ctx) {
+  tip(ctx, box, x, y) {
+    const found = intervalAt(ctx, box, x, y);
+    if (!found) return "";
     const { run } = ctx;
-    const at = (value: number): string | null => (Number.isNaN(value) ? null : seconds(value));
-    const shown = Array.from({ length: run.tasks }, (_, i) => i).filter((i) => !(run.startedAt(i) > ctx.window[1] || run.endedAt(i) < ctx.window[0]));
-    return {
-      columns: ["task", "node", "ready s", "started s", "ended s"],
-      ...limited(shown, (i) => [run.taskName(i), run.nodes[run.tkNode.data[i]]?.id ?? null, at(run.readyAt(i)), at(run.startedAt(i)), at(run.endedAt(i))]),
-      pick: (row) => ({ kind: "task", id: shown[row] }),
-    };
+    const { id } = found;
+    if (found.lane.isTasks) {
+      return `task ${run.taskName(id)} on ${run.nodes[run.tkNode.data[id]]?.id}\nready ${seconds(run.readyAt(id))}, ran ${seconds(run.startedAt(id))} to ${seconds(run.endedAt(id))} s`;
+    }
+    const at = timeOf(scaleOf(ctx, box), x);
+    return `transfer ${run.transferName(id)}, ${number(run.exSize.data[id])} MB\nserved ${seconds(run.servedFrom(id))} to ${seconds(run.servedTo(id))} s\nhere ${number(rateAt(run, id, at))} of ${number(run.soloRate(id))} MB/s alone`;
   },
+  table,
 };

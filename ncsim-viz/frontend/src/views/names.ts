@@ -13,12 +13,14 @@ export function nameOf(run: Run, selection: Selection): string {
     case "link": return `link ${run.links[selection.id]?.id}`;
     case "node": return `node ${run.nodes[selection.id]?.id}`;
     case "recalc": return `recalculation ${selection.id + 1}`;
+    case "row": return `run ${selection.id + 1} of the study`;
   }
 }
 
 /** Whether a selection names something that exists, as a hand-written address may not. */
-export function exists(run: Run, selection: Selection): boolean {
+export function exists(run: Run, selection: Selection, rows = 0): boolean {
   const counts = {
+    row: rows,
     task: run.tasks, transfer: run.transfers, link: run.links.length, node: run.nodes.length, recalc: run.recalcs,
   };
   return selection.id < counts[selection.kind];
@@ -76,7 +78,10 @@ export function transferRow(run: Run, x: number): Cell[] {
 }
 
 /** Tasks and transfers of the binding chain, as Python's explanation names them. */
-export function chainSets(ctx: Context): { tasks: Set<number>; transfers: Set<number> } {
+export interface ChainSets { tasks: Set<number>; transfers: Set<number> }
+export const chainSets = (ctx: Context): ChainSets => ctx.memo("chain", [ctx.extras], () => makeChainSets(ctx));
+
+function makeChainSets(ctx: Context): ChainSets {
   const tasks = new Set<number>();
   const transfers = new Set<number>();
   for (const item of ctx.extras.explanation?.[0]?.chain ?? []) {
@@ -90,9 +95,21 @@ export const nowText = (ctx: Context): string =>
   ctx.ui.event < 0 ? "before the first event"
     : `line ${ctx.run.evLine.data[ctx.ui.event]}, ${seconds(ctx.ui.time)} s: ${sentence(ctx.run, ctx.ui.event)}`;
 
+/** Step that gives a transfer's rate at an instant; -1 outside its service. */
+export function stepAt(run: Run, x: number, time: number): number {
+  if (!(run.servedFrom(x) <= time) || run.servedTo(x) < time) return -1;
+  for (let step = run.exLast.data[x]; step >= 0; step = run.stPrevious.data[step]) if (run.stepTime(step) <= time) return step;
+  return -1;
+}
+
+export function rateAt(run: Run, x: number, time: number): number | null {
+  const step = stepAt(run, x, time);
+  return step < 0 ? null : run.stRate.data[step];
+}
+
 /** Rows for a table, with a limit that is said. */
 export const MAX_ROWS = 5000;
-export function limited<T>(all: T[], row: (each: T) => Cell[]): { rows: Cell[][]; note?: string } {
+export function limited<T>(all: T[], row: (each: T, i: number) => Cell[]): { rows: Cell[][]; note?: string } {
   const rows = all.slice(0, MAX_ROWS).map(row);
   return all.length > MAX_ROWS ? { rows, note: `The first ${MAX_ROWS} of ${all.length} rows; narrow the window to see others.` } : { rows };
 }

@@ -6,60 +6,102 @@ import type { Box, Context, View } from "./view";
 
 const words = (part: string): string => part.replaceAll("_", " ");
 
-function draw(p: Painter, ctx: Context, box: Box): void {
-  const { run, colours, extras } = ctx;
+type Fact = [label: string, value: string];
+
+function factsOf({ run, extras }: Context): Fact[] {
   const metrics = extras.metrics?.[0];
-  const facts: [string, string][] = [
-    ["status", run.status.replaceAll("_", " ")],
+  return [
+    ["status", words(run.isLive ? "live" : run.status)],
     ["makespan", run.done?.makespan != null ? `${seconds(run.done.makespan)} s` : "–"],
     ["critical path alone", metrics?.critical_path_s != null ? `${number(metrics.critical_path_s, 6)} s` : "–"],
     ["tasks ended", metrics ? `${metrics.tasks.ended} of ${metrics.tasks.total}` : String(run.tasks)],
-    ["between nodes", metrics ? `${number(metrics.remote_MB)} MB, ${number(metrics.route_work_MB_hops)} MB·hops` : "–"],
+    ["sent between nodes", metrics ? `${number(metrics.remote_MB)} MB` : "–"],
+    ["MB × hops", metrics ? number(metrics.route_work_MB_hops) : "–"],
     ["mean slowdown", metrics?.mean_transfer_slowdown != null ? `× ${number(metrics.mean_transfer_slowdown)}` : "–"],
+    ["worst slowdown", metrics?.max_transfer_slowdown != null ? `× ${number(metrics.max_transfer_slowdown)}` : "–"],
   ];
-  const wide = (box.width - 32) / facts.length;
-  facts.forEach(([label, value], i) => {
-    p.rect(16 + i * wide, 14, wide - 10, 58, { fill: colours.panel });
-    p.text(26 + i * wide, 30, label, { fill: colours.muted, size: 11 });
-    p.text(26 + i * wide, 52, fitted(value, wide - 28, 14), { fill: colours.ink, size: 14, bold: true });
-  });
-  let y = 100;
-  const explanation = extras.explanation?.[0];
-  if (explanation) {
-    p.text(16, y, "Where the makespan went (binding chain)", { fill: colours.ink, size: 14, bold: true });
-    let x = 16;
-    const whole = box.width - 32;
-    Object.entries(explanation.totals_us).filter(([, spent]) => spent > 0).forEach(([part, spent], i) => {
-      const width = (spent / explanation.makespan_us) * whole;
-      p.rect(x, y + 16, width, 26, { fill: colours.categories[i % 8] });
-      if (i % 2) hatch(p, x, y + 16, width, 26, colours.paper, 7);
-      x += width;
-      const column = i % 3;
-      const row = Math.floor(i / 3);
-      p.rect(16 + column * (whole / 3), y + 54 + row * 20, 12, 12, { fill: colours.categories[i % 8] });
-      p.text(34 + column * (whole / 3), y + 60 + row * 20, `${words(part)}: ${seconds(spent)} s, ${percent(spent / explanation.makespan_us)}`, { fill: colours.ink, size: 12 });
-    });
-    y += 130;
+}
+
+const CARD = { width: 160, height: 66 };
+const perRow = (width: number): number => Math.max(1, Math.min(8, Math.floor((width - 22) / CARD.width)));
+
+function draw(p: Painter, ctx: Context, box: Box): void {
+  let y = paintFacts(p, ctx, box.width);
+  const { detail } = ctx.run.done ?? { detail: "" };
+  if (detail) {
+    p.text(16, y, fitted(detail, box.width - 32, 13), { fill: ctx.colours.bad, size: 13, bold: true });
+    y += 28;
   }
+  y = paintChain(p, ctx, box.width, y);
+  paintBusiest(p, ctx, box.width, y);
+}
+
+function paintFacts(p: Painter, ctx: Context, width: number): number {
+  const { colours } = ctx;
+  const facts = factsOf(ctx);
+  const many = perRow(width);
+  const wide = (width - 22) / many;
+  facts.forEach(([label, value], i) => {
+    const [x, y] = [16 + (i % many) * wide, 14 + Math.floor(i / many) * CARD.height];
+    p.rect(x, y, wide - 10, CARD.height - 8, { fill: colours.panel });
+    p.text(x + 10, y + 16, label, { fill: colours.muted, size: 11 });
+    p.text(x + 10, y + 38, fitted(value, wide - 26, 15), { fill: colours.ink, size: 15, bold: true });
+  });
+  return 14 + Math.ceil(facts.length / many) * CARD.height + 22;
+}
+
+/** Every second part is hatched, so that neighbours differ without colour. */
+function swatch(p: Painter, ctx: Context, x: number, y: number, width: number, height: number, i: number): void {
+  p.rect(x, y, width, height, { fill: ctx.colours.categories[i % 8] });
+  if (i % 2) hatch(p, x, y, width, height, ctx.colours.paper, 6);
+}
+
+/** Where the makespan went along the binding chain; Python's numbers. */
+function paintChain(p: Painter, ctx: Context, width: number, y: number): number {
+  const { colours, extras } = ctx;
+  const explanation = extras.explanation?.[0];
+  if (!explanation) return y;
+  p.text(16, y, "Where the makespan went, along the binding chain", { fill: colours.ink, size: 14, bold: true });
+  const whole = width - 32;
+  const parts = Object.entries(explanation.totals_us).filter(([, spent]) => spent > 0);
+  const many = width < 800 ? 2 : 3;
+  let x = 16;
+  parts.forEach(([part, spent], i) => {
+    const share = spent / explanation.makespan_us;
+    swatch(p, ctx, x, y + 16, share * whole, 26, i);
+    x += share * whole;
+    const [left, row] = [16 + (i % many) * (whole / many), y + 54 + Math.floor(i / many) * 20];
+    swatch(p, ctx, left, row, 14, 12, i);
+    p.text(left + 20, row + 6, `${words(part)}: ${seconds(spent)} s, ${percent(share)}`, { fill: colours.ink, size: 12 });
+  });
+  return y + 54 + Math.ceil(parts.length / many) * 20 + 30;
+}
+
+const BARS = 14;
+
+function paintBusiest(p: Painter, ctx: Context, width: number, y: number): void {
+  const { colours, marks, extras } = ctx;
+  const metrics = extras.metrics?.[0];
   if (!metrics) return;
-  const half = (box.width - 48) / 2;
-  const bars = (left: number, title: string, rows: { id: string; utilisation: number }[]): void => {
-    p.text(left, y, title, { fill: colours.ink, size: 14, bold: true });
-    const busy = rows.filter((row) => row.utilisation > 0).sort((a, b) => b.utilisation - a.utilisation).slice(0, 14);
-    busy.forEach((row, i) => {
-      const top = y + 16 + i * 22;
-      p.text(left, top + 8, fitted(row.id, 85, 12), { fill: colours.ink, size: 12 });
+  const half = (width - 48) / 2;
+  const bars = (left: number, title: string, rows: { id: string; utilisation: number }[], isMarked: (i: number) => boolean): void => {
+    const busy = rows.map((row, i) => ({ ...row, i })).filter((row) => row.utilisation > 0).sort((a, b) => b.utilisation - a.utilisation);
+    const more = busy.length > BARS ? `, the first ${BARS} of ${busy.length}` : "";
+    p.text(left, y, `${title}${more}`, { fill: colours.ink, size: 14, bold: true });
+    busy.slice(0, BARS).forEach((row, k) => {
+      const top = y + 16 + k * 22;
+      p.text(left, top + 8, fitted(row.id, 85, 12), { fill: isMarked(row.i) ? colours.select : colours.ink, size: 12, bold: isMarked(row.i) });
       p.rect(left + 90, top, (half - 150) * row.utilisation, 15, { fill: colours.categories[0] });
       p.text(left + 96 + (half - 150) * row.utilisation, top + 8, percent(row.utilisation), { fill: colours.ink, size: 11 });
     });
   };
-  bars(16, "Busiest nodes (up to 14)", [...metrics.nodes]);
-  bars(32 + half, "Busiest links (up to 14)", [...metrics.links]);
+  bars(16, "Busiest nodes", metrics.nodes, (i) => marks.nodes.has(i));
+  bars(32 + half, "Busiest links", metrics.links, (i) => marks.links.has(i));
 }
 
 export const overview: View = {
-  id: "overview", title: "Overview", draw,
-  height: () => 570,
+  id: "overview", title: "Overview", key: "1", draw,
+  height: (_ctx, width) => 530 + Math.ceil(8 / perRow(width)) * CARD.height,
   summary: (ctx) => `Run ${ctx.run.status}${ctx.run.done?.makespan != null ? `, makespan ${seconds(ctx.run.done.makespan)} s` : ""}`,
   table: (ctx) => ({
     columns: ["what", "label", "from s", "to s", "spent on"],

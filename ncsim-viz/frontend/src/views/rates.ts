@@ -1,92 +1,150 @@
 /** Staircases: the rate of each transfer over time, each step with its cause. */
 
-import { timeAxis, timeOf, xOf, type Scale } from "../draw/axis";
+import { playhead, timeAxis, timeOf, xOf, type Scale } from "../draw/axis";
 import { count, number, seconds } from "../draw/format";
 import { fitted, type Painter } from "../draw/painter";
-import { causeOf, limited } from "./names";
-import type { Box, Context, View } from "./view";
+import { causeOf, limited, stepAt } from "./names";
+import type { Box, Context, Table, View } from "./view";
 
 const ROW = 58;
-const LEFT = 150;
+const LEFT = 160;
 const TOP = 24;
-const MAX = 400;
+/** Marks of causes and numbers keep this distance. */
+const APART_px = 8;
 
 const scaleOf = (ctx: Context, box: Box): Scale => ({ from: ctx.window[0], to: ctx.window[1], left: LEFT, right: box.width - 12 });
 
+/** Transfers in service in the window, in order of service. */
 export function shownTransfers(ctx: Context): number[] {
   const { run, window } = ctx;
-  const found: number[] = [];
-  for (let x = 0; x < run.transfers; x++) {
-    const from = run.servedFrom(x);
-    if (Number.isNaN(from) || from > window[1] || run.servedTo(x) < window[0]) continue;
-    found.push(x);
-  }
-  return found.sort((a, b) => run.servedFrom(a) - run.servedFrom(b) || a - b);
+  return ctx.memo("shown transfers", [ctx.ui.window], () => {
+    const found: number[] = [];
+    for (let x = 0; x < run.transfers; x++) {
+      const from = run.servedFrom(x);
+      if (!Number.isNaN(from) && from <= window[1] && !(run.servedTo(x) < window[0])) found.push(x);
+    }
+    return found.sort((a, b) => run.servedFrom(a) - run.servedFrom(b) || a - b);
+  });
 }
 
 function draw(p: Painter, ctx: Context, box: Box): void {
-  const { run, colours, ui } = ctx;
   const s = scaleOf(ctx, box);
   const all = shownTransfers(ctx);
-  timeAxis(p, s, 0, box.height, colours);
-  all.slice(0, MAX).forEach((x, row) => {
-    const top = TOP + row * ROW;
-    const floor = top + ROW - 8;
-    const solo = run.soloRate(x);
-    const most = run.stepsOf(x).reduce((high, step) => Math.max(high, run.stRate.data[step]), 1e-12);
-    const height = ROW - 20;
-    const isSelected = ui.selection?.kind === "transfer" && ui.selection.id === x;
-    p.text(8, top + 18, fitted(run.transferName(x), LEFT - 14, 12), { fill: isSelected ? colours.select : colours.ink, size: 12, bold: true });
-    p.text(8, top + 34, `${number(run.exSize.data[x])} MB, alone ${number(solo, 3)} MB/s`, { fill: colours.muted, size: 10 });
-    p.clip(LEFT, top, s.right - LEFT, ROW, () => {
-      const from = xOf(s, run.servedFrom(x));
-      const end = xOf(s, Number.isNaN(run.servedTo(x)) ? run.end : run.servedTo(x));
-      if (solo <= most * 1.05) p.line([from, floor - (height * solo) / most, end, floor - (height * solo) / most], { stroke: colours.muted, dash: [4, 3] });
-      const steps = run.stepsOf(x);
-      steps.forEach((step, k) => {
-        const x0 = xOf(s, run.stepTime(step));
-        const x1 = k + 1 < steps.length ? xOf(s, run.stepTime(steps[k + 1])) : end;
-        const y = floor - height * (run.stRate.data[step] / most);
-        const fill = colours.categories[run.exDag.data[x] % 8];
-        p.rect(x0, y, Math.max(0.5, x1 - x0), floor - y, { fill, alpha: 0.75 });
-        p.line([x0, y, x1, y], { stroke: colours.ink });
-        const label = number(run.stRate.data[step], 2);
-        if (x1 - x0 > 8 + label.length * 6) p.text((x0 + x1) / 2, Math.max(top + 8, Math.min(y - 6, floor - 10)), label, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
-        if (run.stRate.data[step] === 0) p.text((x0 + x1) / 2, floor - 8, "⏸", { fill: colours.bad, size: 11, anchor: "middle" });
-        p.text(x0, floor + 4, run.rcIsStart.data[run.stRecalc.data[step]] ? "▲" : "●", { fill: colours.muted, size: 8, anchor: "middle" });
-      });
-    });
-    p.line([LEFT, floor, s.right, floor], { stroke: colours.grid });
+  timeAxis(p, s, box.top, box.bottom, ctx.colours);
+  if (!all.length) p.text(LEFT, TOP + 24, emptyText(ctx), { fill: ctx.colours.muted, size: 13 });
+  const first = Math.max(0, Math.floor((box.top - TOP) / ROW));
+  const last = Math.min(all.length, Math.ceil((box.bottom - TOP) / ROW));
+  p.clip(0, box.top + TOP - 4, box.width, box.bottom - box.top, () => {
+    for (let row = first; row < last; row++) paintRow(p, ctx, s, all[row], TOP + row * ROW);
   });
-  const x = xOf(s, ui.time);
-  if (ui.event >= 0 && x >= LEFT) p.line([x, 0, x, box.height], { stroke: colours.select, width: 1.5 });
-  if (all.length > MAX) p.text(8, TOP + MAX * ROW + 12, `The first ${MAX} of ${all.length} transfers in this window; narrow it to see others.`, { fill: colours.ink, size: 12 });
+}
+
+const emptyText = (ctx: Context): string => (ctx.run.recalcs ? "No transfer is in service in this window." : "No rate was recorded in this run.");
+
+function paintRow(p: Painter, ctx: Context, s: Scale, x: number, top: number): void {
+  const { run, colours, marks } = ctx;
+  const floor = top + ROW - 12;
+  const solo = run.soloRate(x);
+  const steps = run.stepsOf(x);
+  const most = steps.reduce((high, step) => Math.max(high, run.stRate.data[step]), 1e-12);
+  const height = ROW - 26;
+  const isMarked = marks.transfers.has(x);
+  if (isMarked) p.rect(0, top, LEFT - 6, ROW - 4, { fill: colours.lane, stroke: colours.select });
+  p.text(8, top + 16, fitted(run.transferName(x), LEFT - 20, 12), { fill: isMarked ? colours.select : colours.ink, size: 12, bold: true });
+  p.text(8, top + 32, fitted(`${number(run.exSize.data[x])} MB, alone ${number(solo, 3)} MB/s`, LEFT - 14, 10), { fill: colours.muted, size: 10 });
+  p.clip(LEFT - 4, top, s.right - LEFT + 8, ROW, () => {
+    const y = (rate: number): number => floor - (height * rate) / most;
+    const ends = [xOf(s, run.servedFrom(x)), xOf(s, run.servedTo(x) || run.end)];
+    stairs(p, ctx, s, { x, steps, top, floor, y, end: ends[1] });
+    if (solo <= most * 1.05) p.line([ends[0], y(solo), ends[1], y(solo)], { stroke: colours.muted, dash: [4, 3] });
+  });
+  p.line([LEFT, floor, s.right, floor], { stroke: colours.grid });
+}
+
+interface Stairs { x: number; steps: number[]; top: number; floor: number; y: (rate: number) => number; end: number }
+
+/** Areas first, numbers and causes above them; what falls into one pixel is drawn once, at its greatest. */
+function stairs(p: Painter, ctx: Context, s: Scale, { x, steps, top, floor, y, end }: Stairs): void {
+  const { run, colours } = ctx;
+  const fill = colours.categories[run.exDag.data[x] % 8];
+  const edges = steps.map((step) => xOf(s, run.stepTime(step)));
+  edges.push(end);
+  let lastMark = -Infinity;
+  let lastText = -Infinity;
+  for (let k = 0; k < steps.length; k++) {
+    const [x0] = [edges[k]];
+    let rate = run.stRate.data[steps[k]];
+    while (k + 1 < steps.length && edges[k + 1] - x0 < 0.5) rate = Math.max(rate, run.stRate.data[steps[++k]]);
+    const x1 = edges[k + 1];
+    if (x1 < s.left - 20 || x0 > s.right + 20) continue;
+    p.rect(x0, y(rate), Math.max(0.5, x1 - x0), floor - y(rate), { fill, alpha: 0.75 });
+    p.line([x0, y(rate), x1, y(rate)], { stroke: colours.ink });
+    if (rate === 0) p.text((x0 + x1) / 2, floor - 8, "paused", { fill: colours.bad, size: 10, anchor: "middle", halo: colours.paper });
+    const label = number(rate, 2);
+    if (rate > 0 && x1 - x0 > 8 + label.length * 6 && x0 > lastText) {
+      p.text((x0 + x1) / 2, Math.max(top + 7, y(rate) - 7), label, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
+      lastText = x1 - 4;
+    }
+    if (x0 - lastMark >= APART_px) {
+      p.text(x0, floor + 6, run.rcIsStart.data[run.stRecalc.data[steps[k]]] ? "▲" : "●", { fill: colours.muted, size: 8, anchor: "middle" });
+      lastMark = x0;
+    }
+  }
+}
+
+const transferAt = (ctx: Context, box: Box, y: number): number | undefined =>
+  (y < box.top + TOP - 4 ? undefined : shownTransfers(ctx)[Math.floor((y - TOP) / ROW)]);
+
+function stepUnder(ctx: Context, box: Box, x: number, y: number): number {
+  const transfer = transferAt(ctx, box, y);
+  return transfer === undefined || x < LEFT ? -1 : stepAt(ctx.run, transfer, timeOf(scaleOf(ctx, box), x));
+}
+
+function table(ctx: Context): Table {
+  const { run } = ctx;
+  const chosen = ctx.ui.selection?.kind === "transfer" ? [ctx.ui.selection.id] : shownTransfers(ctx);
+  const steps = chosen.flatMap((x) => run.stepsOf(x));
+  return {
+    columns: ["transfer", "from s", "MB/s", "bottleneck", "contenders", "hidden", "hidden factor", "flows on link", "cause"],
+    ...limited(steps, (step) => [run.transferName(run.stTransfer.data[step]), seconds(run.stepTime(step)), run.stRate.data[step],
+      run.links[run.stLink.data[step]]?.id ?? null, run.stContenders.data[step], run.stHidden.data[step], number(run.stFactor.data[step]),
+      run.stFlows.data[step], causeOf(run, run.stRecalc.data[step])]),
+    pick: (row) => ({ kind: "recalc", id: run.stRecalc.data[steps[row]] }),
+  };
 }
 
 export const rates: View = {
   id: "rates",
   title: "Rates",
+  key: "4",
   summary: (ctx) => `Rate over time of ${count(shownTransfers(ctx).length, "transfer")}; each row is as high as its own greatest rate; the area is its size; dashed is the rate alone; ▲ a start and ● a finish of a transfer caused the step`,
-  height: (ctx) => TOP + Math.min(MAX, shownTransfers(ctx).length) * ROW + 24,
+  height: (ctx) => TOP + shownTransfers(ctx).length * ROW + 8,
   draw,
+  overlay: (p, ctx, box) => {
+    if (ctx.ui.event >= 0) playhead(p, scaleOf(ctx, box), ctx.ui.time, box.top, box.bottom, ctx.colours);
+  },
   scale: scaleOf,
   hit(ctx, box, x, y) {
-    const transfer = shownTransfers(ctx)[Math.floor((y - TOP) / ROW)];
-    if (transfer === undefined || y < TOP) return null;
-    if (x < LEFT) return { kind: "transfer", id: transfer };
-    const at = timeOf(scaleOf(ctx, box), x);
-    const step = ctx.run.stepsOf(transfer).filter((each) => ctx.run.stepTime(each) <= at).pop();
-    return step === undefined || at > ctx.run.servedTo(transfer) ? null : { kind: "transfer", id: transfer };
+    const transfer = transferAt(ctx, box, y);
+    if (transfer === undefined || (x >= LEFT && stepUnder(ctx, box, x, y) < 0)) return null;
+    return { kind: "transfer", id: transfer };
   },
-  table(ctx) {
-    const { run } = ctx;
-    const chosen = ctx.ui.selection?.kind === "transfer" ? [ctx.ui.selection.id] : shownTransfers(ctx);
-    const steps = chosen.flatMap((x) => run.stepsOf(x));
-    return {
-      columns: ["transfer", "from s", "MB/s", "bottleneck", "contenders", "hidden", "hidden factor", "flows on link", "cause"],
-      ...limited(steps, (step) => [run.transferName(run.stTransfer.data[step]), seconds(run.stepTime(step)), run.stRate.data[step], run.links[run.stLink.data[step]].id,
-        run.stContenders.data[step], run.stHidden.data[step], number(run.stFactor.data[step]), run.stFlows.data[step], causeOf(run, run.stRecalc.data[step])]),
-      pick: (row) => ({ kind: "recalc", id: run.stRecalc.data[steps[row]] }),
-    };
+  tip(ctx, box, x, y) {
+    const step = stepUnder(ctx, box, x, y);
+    return step < 0 ? "" : stepText(ctx, step);
   },
+  table,
 };
+
+/** A step in words: old and new rate, and what decides it. */
+export function stepText(ctx: Context, step: number): string {
+  const { run } = ctx;
+  const previous = run.stPrevious.data[step];
+  const old = previous < 0 ? 0 : run.stRate.data[previous];
+  return [
+    `${run.transferName(run.stTransfer.data[step])}: ${number(old)} → ${number(run.stRate.data[step])} MB/s`,
+    `by ${causeOf(run, run.stRecalc.data[step])} at ${seconds(run.stepTime(step))} s`,
+    `bottleneck ${run.links[run.stLink.data[step]]?.id ?? "–"}: ${count(run.stContenders.data[step], "contender")}, ` +
+      `${count(run.stHidden.data[step], "hidden interferer")} (factor ${number(run.stFactor.data[step], 3)}), ${count(run.stFlows.data[step], "flow")}`,
+  ].join("\n");
+}

@@ -1,11 +1,11 @@
-/** Views that are tables: Compare, Events, Parameters. */
+/** Views that are tables: Events, Parameters. */
 
 import { seconds } from "../draw/format";
 import { kindName, limited, selectionOf, sentence } from "./names";
 import type { Cell, View } from "./view";
 
 export const events: View = {
-  id: "events", title: "Events",
+  id: "events", title: "Events", key: "9",
   summary: (ctx) => `${ctx.run.events} events`,
   table(ctx) {
     const { run, ui } = ctx;
@@ -25,25 +25,8 @@ export const events: View = {
   },
 };
 
-export const compare: View = {
-  id: "compare", title: "Compare",
-  summary: (ctx) => (ctx.extras.comparison ? `Changes from ${ctx.extras.comparison.names.join(" to ")}` : "No second run was given: ncsim view A --compare B"),
-  table(ctx) {
-    const found = ctx.extras.comparison;
-    if (!found) return { columns: ["compare"], rows: [], note: "No second run was given: ncsim view A --compare B -o report.html" };
-    const rows: Cell[][] = [
-      ...found.differences.map((each): Cell[] => ["setting", each.setting, each.first, each.second, ""]),
-      ["makespan s", "", found.makespan_s[0], found.makespan_s[1], found.makespan_ratio === null ? "" : `ratio ${found.makespan_ratio.toFixed(6)}`],
-      ...found.tasks.map((each): Cell[] => ["task", each.label, each.nodes[0], each.nodes[1], `${each.ended_us >= 0 ? "+" : ""}${seconds(each.ended_us)} s: ${each.why}`]),
-      ...found.transfers.map((each): Cell[] => ["transfer", each.label, each.routes[0].join(" "), each.routes[1].join(" "), `${each.took_us >= 0 ? "+" : ""}${seconds(each.took_us)} s: ${each.why}`]),
-      ...found.unmatched.map((each): Cell[] => ["only in one", each, "", "", ""]),
-    ];
-    return { columns: ["what", "name", ...found.names, "change, second minus first"], rows };
-  },
-};
-
 export const parameters: View = {
-  id: "parameters", title: "Parameters",
+  id: "parameters", title: "Parameters", key: "p",
   summary: () => "Resolved configuration, plug-ins and hashes",
   table(ctx) {
     const header = ctx.run.header;

@@ -1,15 +1,16 @@
-/** What a view is: a drawing, a table that says the same, and a screen. */
+/** What a view is: a drawing in two layers, and a table that says the same. */
 
 import type { Cursor } from "../data/cursor";
-import type { Extras } from "../data/load";
+import type { Extras } from "../data/extras";
 import type { Run } from "../data/run";
 import type { Scale } from "../draw/axis";
 import type { Lanes } from "../draw/lanes";
 import type { Painter } from "../draw/painter";
 import type { Palette } from "../draw/palette";
 import type { LaneMode, Selection, Ui, ViewId } from "../state";
+import type { Marks } from "./marks";
 
-export type Cell = string | number | null;
+export type Cell = string | number | boolean | null;
 
 export interface Table {
   columns: string[];
@@ -28,27 +29,44 @@ export interface Context {
   colours: Palette;
   cursor: Cursor;
   window: [number, number];
+  /** What the selection stands for, in every view. */
+  marks: Marks;
   lanesOf(mode: LaneMode): Lanes;
+  /** The value of the last call under a name, if what it depends on is the same. */
+  memo<T>(name: string, on: unknown[], make: () => T): T;
   set(change: Partial<Ui>): void;
   /** Put the playhead after an event. */
   goTo(event: number): void;
   select(selection: Selection | null): void;
+  /** Open the run behind a row of a study; null where that cannot be. */
+  openRow: ((row: number) => void) | null;
 }
 
-export interface Box { width: number; height: number }
+/** A drawing's size, and the part of its height that is seen. */
+export interface Box { width: number; height: number; top: number; bottom: number }
+
+export const boxOf = (width: number, height: number): Box => ({ width, height, top: 0, bottom: height });
 
 export interface View {
   id: ViewId;
   title: string;
+  /** Key that opens it. */
+  key: string;
   /** One sentence for who cannot see the drawing. */
   summary(ctx: Context): string;
   table(ctx: Context): Table;
-  /** The same drawing for screen and export. */
+  /** What stands still while the playhead moves; the same drawing for screen and export. */
   draw?(p: Painter, ctx: Context, box: Box): void;
-  /** Height that the whole drawing wants at a width. */
-  height?(ctx: Context, width: number): number;
+  /** Whether there is nothing to draw now, only a table. */
+  isTable?(ctx: Context): boolean;
+  /** What moves with the playhead, above the still layer. */
+  overlay?(p: Painter, ctx: Context, box: Box): void;
+  /** Height that the whole drawing wants at a width, where so much room is. */
+  height?(ctx: Context, width: number, room: number): number;
   /** What lies under a point. */
   hit?(ctx: Context, box: Box, x: number, y: number): Selection | null;
+  /** More to say about a point than the name of what lies there. */
+  tip?(ctx: Context, box: Box, x: number, y: number): string;
   /** The time axis of the drawing, if it has one: what wheel and drag move. */
   scale?(ctx: Context, box: Box): Scale;
 }

@@ -1,0 +1,105 @@
+/** The winner matrix and the regret bars of a study. */
+
+import { rowOf, winnerParts, type Study, type StudyCell, type StudyTable } from "../data/study";
+import { number, percent } from "../draw/format";
+import { magnitude, onMagnitude } from "../draw/palette";
+import { fitted, hatch, widthOf, type Painter } from "../draw/painter";
+import type { Box, Context } from "./view";
+
+export const WINNER_ROW = 24;
+export const REGRET_ROW = 24;
+export const REGRET_TOP = 92;
+const LABELS = 250;
+const VERDICT = 290;
+
+const cellWidth = (study: Study, box: Box): number =>
+  Math.min(110, (box.width - LABELS - VERDICT) / Math.max(1, winnerParts(study).policies.length));
+
+/** Where the rows begin: below the names of the policies, which stand upright where cells are narrow. */
+export function winnersTop(study: Study, box: Box): number {
+  const longest = winnerParts(study).policies.reduce((most, name) => Math.max(most, widthOf(name, 11)), 0);
+  return longest + 8 <= cellWidth(study, box) ? 60 : 44 + Math.min(150, longest);
+}
+
+const labelOf = (study: Study, row: number): string => {
+  const cells = rowOf(study.winners as StudyTable, row);
+  return winnerParts(study).labels.map((name) => String(cells.get(name))).join(", ");
+};
+const has = (winners: StudyCell | undefined, policy: string): boolean => String(winners ?? "").split("/").includes(policy);
+
+export function paintWinners(p: Painter, ctx: Context, study: Study, box: Box): void {
+  const { colours } = ctx;
+  const winners = study.winners as StudyTable;
+  const { labels, policies } = winnerParts(study);
+  const wide = cellWidth(study, box);
+  const top = winnersTop(study, box);
+  const words = `Ratio to the best ${study.roles?.policy ?? "choice"} under ${String(study.roles?.full ?? "")}; ☆ wins under ${String(study.roles?.solo ?? "")}, ★ wins under ${String(study.roles?.full ?? "")}, ◆ the winners differ`;
+  p.text(12, 16, fitted(words, box.width - 24, 12), { fill: colours.ink, size: 12 });
+  p.text(12, top - 12, fitted(labels.join(", "), LABELS - 20), { fill: colours.muted, size: 11 });
+  policies.forEach((name, i) => {
+    const x = LABELS + (i + 0.5) * wide;
+    if (top === 60) p.text(x, top - 12, name, { fill: colours.ink, size: 11, anchor: "middle", bold: true });
+    else p.shift(x, top - 6, () => p.text(0, 0, fitted(name, 150), { fill: colours.ink, size: 11, bold: true }), -90);
+  });
+  p.text(LABELS + policies.length * wide + 12, top - 12, "☆ → ★, regret", { fill: colours.muted, size: 11 });
+  winners.rows.forEach((_, row) => {
+    const y = top + row * WINNER_ROW;
+    if (y + WINNER_ROW >= box.top && y <= box.bottom) paintRow(p, ctx, study, row, y, wide);
+  });
+}
+
+function paintRow(p: Painter, ctx: Context, study: Study, row: number, y: number, wide: number): void {
+  const { colours } = ctx;
+  const cells = rowOf(study.winners as StudyTable, row);
+  const { policies } = winnerParts(study);
+  p.text(12, y + 12, fitted(labelOf(study, row), LABELS - 20, 12), { fill: colours.ink, size: 12 });
+  policies.forEach((policy, i) => {
+    const x = LABELS + i * wide;
+    const ratio = cells.get(policy);
+    if (typeof ratio !== "number") return p.text(x + wide / 2, y + 12, "–", { fill: colours.muted, size: 11, anchor: "middle" });
+    const share = Math.min(1, Math.log2(Math.max(1, ratio)) / 2);
+    const marks = `${has(cells.get("solo_winners"), policy) ? "☆" : ""}${has(cells.get("full_winners"), policy) ? "★" : ""}`;
+    p.rect(x + 1, y + 1, wide - 2, WINNER_ROW - 2, { fill: magnitude(1 - share), stroke: marks ? colours.ink : undefined, width: 2 });
+    const text = wide > 52 ? `${marks} ${number(ratio, 3)}` : marks || (wide > 30 ? number(ratio, 2) : "");
+    p.text(x + wide / 2, y + 12, text, { fill: onMagnitude(1 - share), size: 11, anchor: "middle", bold: marks !== "" });
+  });
+  const inverted = cells.get("inversion") === true || cells.get("inversion") === 1;
+  const regret = cells.get("regret");
+  const verdict = `${inverted ? "◆ " : ""}${String(cells.get("solo_winners") ?? "–")} → ${String(cells.get("full_winners") ?? "–")}${typeof regret === "number" ? `, ${percent(regret)}` : ""}`;
+  p.text(LABELS + policies.length * wide + 12, y + 12, fitted(verdict, VERDICT - 20, 11), { fill: inverted ? colours.bad : colours.ink, size: 11, bold: inverted });
+}
+
+/** Rows of the regret bars: largest first. */
+export function byRegret(winners: StudyTable): number[] {
+  const at = winners.columns.indexOf("regret");
+  const regret = (row: number): number => Number(winners.rows[row][at] ?? -1);
+  return winners.rows.map((_, i) => i).sort((a, b) => regret(b) - regret(a) || a - b);
+}
+
+export function paintRegret(p: Painter, ctx: Context, study: Study, box: Box): void {
+  const { colours } = ctx;
+  const winners = study.winners as StudyTable;
+  const order = byRegret(winners);
+  const regret = (row: number): number => Number(rowOf(winners, row).get("regret") ?? 0);
+  const most = Math.max(1e-9, ...order.slice(0, 1).map(regret));
+  p.text(12, 16, fitted(`Regret: how much longer the winner under ${String(study.roles?.solo ?? "")} takes than the winner under ${String(study.roles?.full ?? "")}`, box.width - 24, 13), { fill: colours.ink, size: 13, bold: true });
+  const totals = study.totals?.rows.map((row) => `${String(row[0]).replaceAll("_", " ")} ${typeof row[1] === "number" ? number(row[1], 3) : String(row[1])}`) ?? [];
+  p.text(12, 38, fitted(totals.join(" · "), box.width - 24, 12), { fill: colours.ink, size: 12 });
+  p.rect(12, 56, 24, 12, { fill: colours.categories[5] });
+  hatch(p, 12, 56, 24, 12, colours.paper, 6);
+  p.text(42, 62, "◆ hatched: rank inversion, another policy wins", { fill: colours.ink, size: 11 });
+  p.rect(342, 56, 24, 12, { fill: colours.categories[0] });
+  p.text(372, 62, "plain: the same policy wins", { fill: colours.ink, size: 11 });
+  const left = LABELS + 20;
+  const wide = box.width - left - 120;
+  order.forEach((row, i) => {
+    const y = REGRET_TOP + i * REGRET_ROW;
+    if (y + REGRET_ROW < box.top || y > box.bottom) return;
+    const inverted = rowOf(winners, row).get("inversion") === true || rowOf(winners, row).get("inversion") === 1;
+    const width = Math.max(1, (wide * Math.max(0, regret(row))) / most);
+    p.text(12, y + 11, fitted(`${inverted ? "◆ " : ""}${labelOf(study, row)}`, left - 20, 12), { fill: colours.ink, size: 12, bold: inverted });
+    p.rect(left, y + 3, width, REGRET_ROW - 8, { fill: inverted ? colours.categories[5] : colours.categories[0] });
+    if (inverted) hatch(p, left, y + 3, width, REGRET_ROW - 8, colours.paper, 7);
+    p.text(left + width + 8, y + 11, percent(regret(row)), { fill: colours.ink, size: 11 });
+  });
+}
