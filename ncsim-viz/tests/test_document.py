@@ -3,9 +3,10 @@ import json
 
 import pytest
 from ncsim_core.errors import ScenarioError
+from ncsim_core.trace.embedding import traces_in
 from ncsim_core.trace.records import TraceError
 from ncsim_viz import commands
-from ncsim_viz.document import report_html, traces_in
+from ncsim_viz.document import report_html
 
 HEADER = {
     "format": "ncsim-trace", "version": "1.0", "time_unit": "us", "level": "full", "software": "x",

@@ -1,10 +1,12 @@
 """The verbs that read runs: trace, explain, compare, export."""
 
+import gzip
 import json
 
 import pytest
 from ncsim_core.cli.main import app, exit_code_of
 from ncsim_core.testing.worked_example import worked_example
+from ncsim_core.trace.embedding import TRACE_TYPE, compressed_trace, data_element
 from ncsim_core.trace.records import TraceHeader
 from ncsim_core.trace.writer import TraceWriter
 from typer.testing import CliRunner
@@ -114,3 +116,35 @@ def test_export_writes_tables_to_a_folder(run, tmp_path):
 
 def test_export_prints_to_standard_output(run):
     assert json.loads(ncsim("export", run, "--to", "perfetto", "-o", "-").stdout)["traceEvents"]
+
+
+@pytest.fixture
+def report(run):
+    """Return a page with the run inside, and what such pages may hold besides."""
+    element = data_element(TRACE_TYPE, compressed_trace(run))
+    page = run / "report.html"
+    page.write_text(f"<html><script>é</script>{element}</html>", encoding="utf-8")
+    return page
+
+
+def test_extract_gives_the_trace_back_byte_for_byte(run, report, tmp_path):
+    plain, packed = tmp_path / "back.jsonl", tmp_path / "back.jsonl.gz"
+
+    assert code("trace", "extract", report, "-o", plain) == 0
+    assert code("trace", "extract", report, "-o", packed) == 0
+    assert plain.read_bytes() == (run / "trace.jsonl").read_bytes()
+    assert gzip.decompress(packed.read_bytes()) == plain.read_bytes()
+
+
+def test_extract_says_what_it_cannot_do(run, report, tmp_path, capsys):
+    target = tmp_path / "back.jsonl"
+    assert code("trace", "extract", run / "trace.jsonl", "-o", target) == 1
+    assert "holds no trace" in capsys.readouterr().err
+    assert code("trace", "extract", report, "-o", target, "-n", 2) == 1
+    assert "no number 2" in capsys.readouterr().err
+    assert code("trace", "extract", report, "-o", report) == 1
+    assert "exists already" in capsys.readouterr().err
+    report.write_text(report.read_text().replace("H4sI", "AAAA"))
+    assert code("trace", "extract", report, "-o", target) == 1
+    assert "damaged" in capsys.readouterr().err
+    assert not target.exists()

@@ -1,6 +1,7 @@
 import pytest
 from ncsim_core.scenario import Fault, ScenarioFaults
 from ncsim_core.scenario.faults import shown
+from ncsim_core.scenario.loader import parse_scenario
 
 
 def test_a_fault_without_a_line_is_one_line_of_text():
@@ -36,8 +37,19 @@ def test_faults_become_plain_data():
             "value": "'5'",
             "suggestion": "5",
             "origin": "f.yaml",
+            "pointer": "",
         }
     ]
+
+
+def test_a_fault_points_into_the_document_as_it_was_written():
+    published = {"network": {"nodes": []}, "dags": []}  # without its root
+
+    with pytest.raises(ScenarioFaults) as caught:
+        parse_scenario(published)
+
+    pointers = {each.path: each.pointer for each in caught.value.faults}
+    assert pointers["network.nodes"] == "/network/nodes"
 
 
 @pytest.mark.parametrize(

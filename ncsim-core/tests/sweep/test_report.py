@@ -3,7 +3,14 @@ import io
 
 import pytest
 from ncsim_core.errors import ScenarioError
-from ncsim_core.sweep.report import paired, policies, policy_cases, policy_totals, summary
+from ncsim_core.sweep.report import (
+    means,
+    paired,
+    policies,
+    policy_cases,
+    policy_totals,
+    summary,
+)
 from ncsim_core.sweep.table import MEASURES, Table
 
 
@@ -36,6 +43,15 @@ def test_a_failed_run_enters_no_mean_and_is_counted():
     assert record["mean_makespan_s"] == 2.0
     assert record["median_makespan_s"] == 2.0
     assert (record["runs"], record["left_out"]) == (2, 1)
+
+
+def test_means_may_be_taken_over_columns_too():
+    rows = means(INVERSION, ["interference"], "makespan_s").to_dicts()
+
+    assert [(r["interference"], r["mean_makespan_s"], r["runs"]) for r in rows] == [
+        ("none", 3.5, 2),
+        ("csma_bianchi", 10.0, 2),
+    ]
 
 
 def test_an_inversion_is_told_with_its_regret():

@@ -170,6 +170,14 @@ def test_a_live_trace_can_be_followed_under_its_name(tmp_path, monkeypatch):
         assert '"k":"start"' in path.read_text()
 
 
+def test_the_header_of_a_live_trace_is_there_at_once(tmp_path):
+    path = tmp_path / "t.jsonl"
+    with TraceWriter(path, is_live=True) as writer:
+        worked_example(writer).step()
+
+        assert path.read_text().startswith('{"format":"ncsim-trace"')
+
+
 def test_notes_of_plugins_are_kept_under_their_name(tmp_path):
     writer = TraceWriter(tmp_path / "t.jsonl")
     simulation = worked_example(writer)

@@ -32,12 +32,14 @@ def extras_of(source: Path, run: RunTrace) -> dict[str, object]:
         run: The same run, read.
     """
     folder = source if source.is_dir() else source.parent
-    relations, note = relations_of(folder / SCENARIO_NAME, run)
+    scenario = folder / SCENARIO_NAME
+    relations, note = relations_of(scenario, run)
     return {
         "metrics": [compute_metrics(run)],
         "explanation": [explanation_of(run)],
         "relations": relations,
         "note": note,
+        "scenario": scenario.read_text("utf-8", "replace") if scenario.is_file() else None,
     }
 
 

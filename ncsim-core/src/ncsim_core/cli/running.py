@@ -96,13 +96,15 @@ def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> R
         sections=scenario.config.sections,
     )
     # Metrics are those that the trace gives: without rates in it, none are counted either.
-    level = "full" if request.trace_level == "full" else "coarse"
-    recorder = RunRecorder(header, cast("TraceLevel", level), keeps_steps=False)
+    counted: TraceLevel = "full" if request.trace_level == "full" else "coarse"
+    recorder = RunRecorder(header, counted, keeps_steps=False)
     watching: list[Observer] = [*observers, recorder]
     with ExitStack() as open_files:
         if request.trace_level != "off":
             name = "trace.jsonl.gz" if request.compress else "trace.jsonl"
-            writer = TraceWriter(folder / name, header, cast("TraceLevel", request.trace_level))
+            level = cast("TraceLevel", request.trace_level)
+            # Flushing compressed data would make its bytes depend on the clock.
+            writer = TraceWriter(folder / name, header, level, is_live=not request.compress)
             watching.append(open_files.enter_context(writer))
         result = _simulated(request, watching)
     metrics = compute_metrics(recorder.run_trace())

@@ -1,4 +1,4 @@
-"""``ncsim trace``: print a trace for people, or verify it."""
+"""``ncsim trace``: print a trace for people, verify it, or take it out of a report."""
 
 from itertools import islice
 from pathlib import Path
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from ncsim_core.trace.check import TraceReport
 
 app = typer.Typer(
-    no_args_is_help=True, rich_markup_mode=None, help="Look at the trace of a run, or verify it."
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Look at the trace of a run, verify it, or take it out of a report.",
 )
 
 RunPath = Annotated[
@@ -60,6 +62,34 @@ def check(
             _print_report(report)
     if any(report.findings for report in reports):
         raise typer.Exit(ExitCode.INVALID_INPUT)
+
+
+@app.command("extract", epilog="Example: ncsim trace extract report.html -o trace.jsonl")
+def extract(
+    report: Annotated[Path, typer.Argument(metavar="REPORT", help="Report of ncsim view.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="File to write; compressed if it ends in .gz.")
+    ] = Path("trace.jsonl"),
+    *,
+    number: Annotated[
+        int, typer.Option("--number", "-n", min=1, help="Which, if the report compares two runs.")
+    ] = 1,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file.")] = False,
+) -> None:
+    """Take the trace out of a report, byte for byte as the run wrote it."""
+    from ncsim_core.errors import ScenarioError
+    from ncsim_core.trace.embedding import embedded_traces, traces_in
+
+    if output.exists() and not force:
+        raise ScenarioError(f"{output}: exists already; choose another name or give --force")
+    page = report.read_text(encoding="utf-8", errors="replace")
+    traces = embedded_traces(page) if output.suffix == ".gz" else traces_in(page)
+    if not traces:
+        raise ScenarioError(f"{report}: holds no trace; is it a report of ncsim view?")
+    if number > len(traces):
+        raise ScenarioError(f"{report}: holds {len(traces)} trace(s), no number {number}")
+    output.write_bytes(traces[number - 1])
+    typer.echo(f"written: {output}")
 
 
 def _print_report(report: "TraceReport") -> None:

@@ -48,6 +48,7 @@ class Fault:
         value: The offending value as text, if there is one.
         suggestion: What was probably meant, ready to be typed.
         origin: The file, or the override, that the fault is in.
+        pointer: Where in the document as written, as a JSON pointer (RFC 6901).
         line_text: The line of the file, to be printed with a caret.
         length: Characters that the caret underlines.
     """
@@ -61,6 +62,7 @@ class Fault:
     origin: str = ""
     line_text: str = ""
     length: int = 1
+    pointer: str = ""
 
     def render(self) -> str:
         """Return the fault as ``file:line:col  path: message``, with the line and a caret."""
@@ -106,6 +108,16 @@ def path_text(path: Path) -> str:
     parts = path[1:] if path and path[0] == "scenario" else path
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in parts)
     return _printable(text.removeprefix("."))
+
+
+def json_pointer(path: Path) -> str:
+    """Return a path as a JSON pointer.
+
+    >>> json_pointer(("scenario", "a/b", 2, "~"))
+    '/scenario/a~1b/2/~0'
+    """
+    steps = (str(part).replace("~", "~0").replace("/", "~1") for part in path)
+    return "".join(f"/{step}" for step in steps)
 
 
 def original_path(path: Path, moved: Mapping[Path, Path]) -> Path:

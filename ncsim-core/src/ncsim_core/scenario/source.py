@@ -14,6 +14,7 @@ from ncsim_core.scenario.faults import (
     Path,
     Problem,
     ScenarioFaults,
+    json_pointer,
     original_path,
     path_text,
 )
@@ -149,18 +150,20 @@ def located(
 
 def _fault(problem: Problem, source: Source, positions: Positions, origins: Origins) -> Fault:
     override = origins.override_of(problem.path)
+    path = origins.source_path(problem.path)
     if override is not None:
         source, span = Source(f"override {override}"), None
     else:
-        path = origins.source_path(problem.path)
         span = positions.find(path, is_about_key=problem.is_about_key)
-    return source.fault(
+    fault = source.fault(
         path_text(problem.path), span, problem.message, problem.value, problem.suggestion
     )
+    return replace(fault, pointer=json_pointer(path))
 
 
 def _slip_fault(source: Source, slip: Slip) -> Fault:
-    return source.fault(path_text(slip.path), slip.span, slip.message, slip.value)
+    fault = source.fault(path_text(slip.path), slip.span, slip.message, slip.value)
+    return replace(fault, pointer=json_pointer(slip.path))
 
 
 def _not_a_mapping(document: object) -> Slip:

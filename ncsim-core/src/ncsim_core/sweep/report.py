@@ -35,7 +35,12 @@ def summary(runs: Table, measure: str = "makespan_s", confidence: float = 0.95) 
         ScenarioError: There is no such measure.
     """
     check_measure(measure)
-    columns = parameters(runs)
+    return means(runs, parameters(runs), measure, confidence)
+
+
+def means(runs: Table, by: Sequence[str], measure: str, confidence: float = 0.95) -> Table:
+    """Return mean with Student-t interval and median over all rows that agree in some columns."""
+    columns = list(by)
     rows = []
     for group in grouped(runs.to_dicts(), columns):
         values = [record[measure] for record in group]

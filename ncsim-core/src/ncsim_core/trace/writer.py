@@ -5,6 +5,7 @@ at a fraction of the time.
 """
 
 import json
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
@@ -55,8 +56,8 @@ class TraceWriter(Observer):
         target: Path or text stream.
         header: What the trace says about its scenario.
         level: ``full``, or ``coarse`` to leave ``recalc`` records out.
-        is_live: Write under the final name at once and flush every quarter of a second, for
-            those who follow a run.
+        is_live: Write under the final name at once, the header without delay and the rest at
+            least every quarter of a second, for those who follow a run.
     """
 
     def __init__(
@@ -72,7 +73,7 @@ class TraceWriter(Observer):
         self._level = level
         self._sink = TextSink(target, is_live=is_live)
         self._is_live = is_live
-        self._flushed_at_s = time.monotonic()
+        self._flushed_at_s = -math.inf
         self._float_text = _FloatTexts().__getitem__
         self._lines: list[str] = []
         self._characters = 0

@@ -1,0 +1,127 @@
+"""A study ready for JSON; every number comes from ``ncsim_core.sweep.report``."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+from typing import Final
+
+from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep.report import (
+    SOLO,
+    column_of,
+    full_mode,
+    means,
+    parameters,
+    policies,
+    policy_totals,
+    values_of,
+)
+from ncsim_core.sweep.store import STORE_NAME, Store
+from ncsim_core.sweep.table import Table, shown_value, table_of
+
+MAX_ROWS: Final = 20_000
+"""Runs that are listed one by one; means are always over all."""
+MEASURE: Final = "makespan_s"
+MATRIX_MEASURES: Final = ("regret", "slowdown")
+
+
+def is_study(path: Path) -> bool:
+    """Return whether a path is the folder of a study."""
+    return (path / STORE_NAME).is_file()
+
+
+def study_document(
+    folder: Path,
+    policy: str = "scheduler",
+    mode: str = "interference",
+    where: Mapping[str, str] | None = None,
+) -> dict[str, object]:
+    """Return what the page needs of a study.
+
+    Args:
+        folder: Of the study.
+        policy: The column of the policies that are compared, or the end of its path.
+        mode: The column that tells Solo from Full.
+        where: By column, the value as shown that a run must have to be counted.
+
+    Raises:
+        ScenarioError: There is no study, or ``where`` names what is not varied.
+    """
+    with Store(folder, must_exist=True) as store:
+        _, planned = store.current()
+        counts = store.counts()
+        every = table_of(store)
+    runs = _selected(every, where or {})
+    matrix, roles, note = _matrix(runs, policy, mode)
+    left_out = max(0, len(runs.rows) - MAX_ROWS)
+    notes = [note, f"{left_out} runs are not listed one by one." if left_out else ""]
+    return {
+        "name": every.title,
+        "planned": planned,
+        "counts": counts,
+        "factors": [_factor(every, name) for name in parameters(every)],
+        "roles": roles,
+        "note": " ".join(filter(None, notes)),
+        "runs": _table(replace(runs, rows=runs.rows[:MAX_ROWS])),
+        "winners": None if matrix is None else _table(matrix),
+        "totals": None if matrix is None else _table(policy_totals(matrix)),
+        "groups": list(_groups(runs, matrix)),
+    }
+
+
+def _selected(runs: Table, where: Mapping[str, str]) -> Table:
+    wanted = {column_of(runs, name): value for name, value in where.items()}
+    places = [(runs.columns.index(name), value) for name, value in wanted.items()]
+    rows = (row for row in runs.rows if all(shown_value(row[at]) == each for at, each in places))
+    return replace(runs, rows=tuple(rows))
+
+
+def _matrix(runs: Table, policy: str, mode: str) -> tuple[Table | None, dict[str, str] | None, str]:
+    """Return winners and regret with the columns they are of, or why there are none."""
+    try:
+        matrix = policies(runs, policy, mode)
+        policy, mode = column_of(runs, policy), column_of(runs, mode)
+    except ScenarioError as error:
+        return None, None, f"No winners and regret: {error}."
+    full = full_mode(runs, mode, SOLO)
+    return matrix, {"policy": policy, "mode": mode, "solo": SOLO, "full": full}, ""
+
+
+def _groups(runs: Table, matrix: Table | None) -> Iterator[dict[str, object]]:
+    """Yield the means over what agrees in one factor or two."""
+    names = parameters(runs)
+    yield from _means(runs, names, MEASURE)
+    if matrix is not None:
+        others = [name for name in names if name in matrix.columns]
+        finite = replace(matrix, rows=tuple(tuple(map(_finite, row)) for row in matrix.rows))
+        for measure in MATRIX_MEASURES:
+            yield from _means(finite, others, measure)
+
+
+def _means(table: Table, names: Sequence[str], measure: str) -> Iterator[dict[str, object]]:
+    pairs = combinations(names, 2) if len(table.rows) <= MAX_ROWS else ()
+    for by in [*((name,) for name in names), *pairs]:
+        found = means(table, by, measure)
+        columns = (*by, "mean", "low", "high", "median", "runs", "left_out")
+        entry = {"by": list(by), "measure": measure}
+        yield entry | {"table": _table(replace(found, columns=columns))}
+
+
+def _factor(runs: Table, name: str) -> dict[str, object]:
+    return {"name": name, "values": values_of(runs, name)}
+
+
+def _table(table: Table) -> dict[str, object]:
+    rows = [[_cell(value) for value in row] for row in table.rows]
+    return {"title": table.title, "columns": list(table.columns), "rows": rows}
+
+
+def _cell(value: object) -> object:
+    return shown_value(value) if isinstance(value, dict | list) else _finite(value)
+
+
+def _finite(value: object) -> object:
+    """Return a value that JSON has: a ratio to nothing becomes ``None``."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
