@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep.formatting import shown_value
 from ncsim_core.sweep.report import (
     SOLO,
     column_of,
@@ -19,7 +20,7 @@ from ncsim_core.sweep.report import (
     values_of,
 )
 from ncsim_core.sweep.store import STORE_NAME, Store
-from ncsim_core.sweep.table import Table, shown_value, table_of
+from ncsim_core.sweep.table import Table, table_of
 
 MAX_ROWS: Final = 20_000
 """Runs that are listed one by one; means are always over all."""
@@ -106,7 +107,8 @@ def _means(table: Table, names: Sequence[str], measure: str) -> Iterator[dict[st
         found = means(table, by, measure)
         columns = (*by, "mean", "low", "high", "median", "runs", "left_out")
         entry = {"by": list(by), "measure": measure}
-        yield entry | {"table": _table(replace(found, columns=columns))}
+        title = f"{table.title}: {measure} by {' and '.join(by)}"
+        yield entry | {"table": _table(replace(found, columns=columns, title=title))}
 
 
 def _factor(runs: Table, name: str) -> dict[str, object]:
