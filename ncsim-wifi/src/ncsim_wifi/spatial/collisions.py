@@ -7,9 +7,8 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.relations import RTS_RATIO_dB
 from ncsim_wifi.spatial.scene import Scene
-
-RTS_RATIO_dB = 7.0  # a control frame survives a collision above this ratio (MODEL 2)
 
 
 def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:

@@ -7,18 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ncsim_wifi.mac.timing import SLOT_us
+from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import Exchange
-from ncsim_wifi.spatial.backoff import WINDOWS
+from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.gaps import Gaps, counter_law, mean_remaining_count, survival
 from ncsim_wifi.spatial.overlap import joint_kill, meets_probability, overlap_us
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.statics import BEFORE_CTS_us, Statics
+from ncsim_wifi.spatial.statics import Statics
 
 LARGEST_ON = 0.97
 LEAST_ON = 1e-9
-CTS_SLOTS = 4.2  # slots in which two RTS that do not hear each other collide; calibrated
 
 
 class Traffic(NamedTuple):
@@ -33,6 +32,7 @@ class Traffic(NamedTuple):
         times: How long exchanges take.
         loss: Share of lost frames of each link.
         attempts: a_l.
+        answered: Part of the RTS of each station that are answered.
     """
 
     on: FloatArray
@@ -43,6 +43,7 @@ class Traffic(NamedTuple):
     times: Exchange
     loss: FloatArray
     attempts: FloatArray
+    answered: FloatArray
 
 
 class HiddenLoss(NamedTuple):
@@ -50,6 +51,7 @@ class HiddenLoss(NamedTuple):
 
     Args:
         survives: s_k, shape (relations, 7).
+        answered: Part of RTS that are answered; all without RTS/CTS.
         hit: 1 - nohit_k.
         share: phi_k.
         kill: kd_r, shape (relations,).
@@ -59,6 +61,7 @@ class HiddenLoss(NamedTuple):
     """
 
     survives: FloatArray
+    answered: FloatArray
     hit: FloatArray
     share: FloatArray
     kill: FloatArray
@@ -137,10 +140,11 @@ def hidden_loss(
     )
     on_part = gaps.on_air_us[:, None] / gaps.cycle_us
     survives, missed = (_gated(each, on_part, *gates) for each in result)
+    answered = _answered(scene, statics, gaps)
     by_cts = statics.by_cts[:, None]
-    rts_missed = _rts_survival(statics)
-    survives = np.where(by_cts, rts_missed, survives)
-    missed = np.where(by_cts, rts_missed, missed)
+    survives = np.where(by_cts, statics.by_cts_survives, survives)
+    answered = np.where(by_cts, statics.by_cts_survives, answered)
+    missed = np.where(by_cts, statics.by_cts_missed, missed)
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / time.sum(axis=1, keepdims=True)
     in_group = group_sums(statics, phi * (alone * survives).sum(axis=1))[:, None]
@@ -150,6 +154,7 @@ def hidden_loss(
     correction = _correction(scene, statics, on, kill, later)
     return HiddenLoss(
         np.clip(survives, 0.0, 1.0),
+        np.clip(np.maximum(answered, survives), 1e-9, 1.0),
         np.clip(1.0 - missed, 0.0, 1.0),
         share,
         kill,
@@ -159,15 +164,12 @@ def hidden_loss(
     )
 
 
-def _rts_survival(statics: Statics) -> FloatArray:
-    """Return what RTS survive of another that cannot hear them before the CTS (MODEL 3.8).
-
-    A frame strong enough to be decoded all the same suffers only from one that came earlier.
-    """
-    hostile = statics.hostile
-    loss = statics.same_slot_loss[hostile.link, hostile.station]
-    part = np.where(loss > 0.0, 1.0, 0.5)
-    return np.asarray(1.0 - part[:, None] * CTS_SLOTS / WINDOWS)
+def _answered(scene: Scene, statics: Statics, gaps: Gaps) -> FloatArray:
+    """Return what part of RTS find the receiver free, by stage of the interferer."""
+    if not scene.settings.rts_cts:
+        return np.ones_like(gaps.mean_us)
+    room_us = gaps.room_us(np.full_like(gaps.mean_us, CTS_NOTICED_us))
+    return np.where(statics.hostile.is_strong[:, None], room_us / gaps.cycle_us, 1.0)
 
 
 def _correction(
@@ -224,11 +226,33 @@ def _gaps(
     interrupted = np.clip(
         (count_us - SLOT_us) / (_neighbour_busy_us(scene, traffic)[other] - SLOT_us), 0.0, 1.0
     )
-    on_air_us = np.where(statics.stops_at_cts, BEFORE_CTS_us, times.on_air_us[other])
-    overhead_us = np.where(statics.stops_at_cts, 0.0, times.overhead_us[other])
-    after_us = overhead_us - _ack_extension_us(scene, statics, traffic, kill)
+    on_air_us, overhead_us, after_us = _seen_us(scene, statics, traffic, kill)
     longest_us = float(statics.window_us.max())
     return Gaps(law, on_air_us, after_us, overhead_us, count_us, interrupted, longest_us)
+
+
+def _seen_us(
+    scene: Scene, statics: Statics, traffic: Traffic, kill: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return T, ovh and ov of the interferer of each relation, as the sender meets them.
+
+    From the CTS on a sender that hears it waits with everybody else. A receiver that has
+    locked on an RTS answers nobody until the exchange is over, or was not begun (NAV).
+    """
+    other, hostile = statics.hostile.station, statics.hostile
+    times = traffic.times
+    on_air_us, overhead_us = times.on_air_us[other], times.overhead_us[other]
+    extension_us = _ack_extension_us(scene, statics, traffic, kill)
+    if not scene.settings.rts_cts:
+        return on_air_us, overhead_us, overhead_us - extension_us
+    answered = traffic.answered[other]
+    waits = statics.stops_at_cts
+    on_air_us = np.where(waits, answered * BEFORE_CTS_us + (1.0 - answered) * RTS_us, on_air_us)
+    overhead_us = np.where(waits, (1.0 - answered) * overhead_us, overhead_us)
+    nav_us = (1.0 - answered) * NAV_TIMEOUT_us
+    nav_us = nav_us + np.where(waits, 0.0, answered * (SIFS_us + ACK_us))
+    extension_us = np.where(hostile.locks, nav_us, extension_us)
+    return on_air_us, overhead_us, np.maximum(0.0, overhead_us - extension_us)
 
 
 def _neighbour_busy_us(scene: Scene, traffic: Traffic) -> FloatArray:

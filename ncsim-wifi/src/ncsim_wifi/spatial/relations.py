@@ -17,6 +17,7 @@ FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
 SURVIVAL_DISCOUNT = 0.6
 MAX_JOINT_HAZARD = 10.0
 NOBODY = -1
+RTS_RATIO_dB = 7.0  # a control frame survives a collision above this ratio (MODEL 2)
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,7 @@ class Hostile:
         helper_sets: Which helpers a set holds, shape (sets, helpers).
         group: Number of the group of each relation.
         by_cts_only: Whether only the CTS that answer the station reach the receiver.
+        locks: Whether the receiver locks on frames of the station.
     """
 
     link: IntArray
@@ -89,6 +91,7 @@ class Hostile:
     helper_sets: BoolArray
     group: IntArray
     by_cts_only: BoolArray
+    locks: BoolArray
 
     def __len__(self) -> int:
         return len(self.link)
@@ -133,7 +136,8 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     somebody = near.station != NOBODY
     ratio_dB = scene.ratio_dB(near.power_mW + near.noise_mW[:, None], rows)
     locks = near.power_mW >= 10.0 ** (settings.preamble_dBm / 10.0)
-    is_strong = somebody & (locks | (ratio_dB < settings.preamble_ratio_dB))
+    least_dB = RTS_RATIO_dB if settings.rts_cts else settings.preamble_ratio_dB
+    is_strong = somebody & (locks | (ratio_dB < least_dB))
     by_cts_only = somebody & ~is_strong & _cts_reaches(scene)[near.station, rows]
     is_strong |= by_cts_only
     helper = _helpers(scene, near, is_strong)
@@ -158,6 +162,7 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
         sets,
         group,
         by_cts_only[link, place],
+        locks[link, place],
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import AIFS_us
 from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.handshake import NAV_TIMEOUT_us
 from ncsim_wifi.spatial.scene import Scene
 
 EIFS_AFTER_LOSS_us = 60.2  # EIFS - AIFS beyond AIFS: SIFS + ACK at the slowest rate (MODEL 3.4)
@@ -45,13 +46,16 @@ def silence_us(
     return hears * overhead_us + (1.0 - hears) * unheard_us
 
 
-def silence_of(scene: Scene, clear: FloatArray, attempts: FloatArray) -> Silence:
+def silence_of(
+    scene: Scene, clear: FloatArray, attempts: FloatArray, answered: FloatArray
+) -> Silence:
     """Return the silence after frames of each station.
 
     Args:
         scene: The active links.
         clear: C of the occupancy.
         attempts: a_l, the share of each link in the attempts of its station.
+        answered: Part of the RTS of each link that are answered, 1 without RTS/CTS.
     """
     missed = np.clip(1.0 - clear[scene.station], 0.0, 1.0)
     per_link_us = silence_us(
@@ -60,6 +64,8 @@ def silence_of(scene: Scene, clear: FloatArray, attempts: FloatArray) -> Silence
         hears=scene.hears_receiver.astype(np.float64),
         decodes=scene.decodes.astype(np.float64),
     )
+    answered = answered[:, None]
+    per_link_us = answered * per_link_us + (1.0 - answered) * (NAV_TIMEOUT_us + AIFS_us)
     own = scene.link_of_station * attempts
     overhead_us = own @ scene.overhead_us
     if not scene.settings.terms.silence:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ncsim_wifi.mac.timing import SLOT_us
+from ncsim_wifi.mac.timing import RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.acks import ack_survival
 from ncsim_wifi.spatial.attempts import Attempts, Exchange, attempts_of
@@ -22,6 +22,7 @@ from ncsim_wifi.spatial.backoff import (
 )
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.energy import gate, subset_weights
+from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts
 from ncsim_wifi.spatial.joint import JointStages
 from ncsim_wifi.spatial.losses import (
     LARGEST_ON,
@@ -73,6 +74,8 @@ class FixedPoint:
         self._link_stages[:, 0] = 1.0
         self._attempts = 1.0 / scene.link_of_station.sum(axis=1)[scene.station]
         self._loss = np.zeros(links)
+        self._answered = np.ones(links)
+        self._silenced = np.zeros(stations)
         self._clear = np.ones((stations, stations))
         self._blocked = np.zeros(stations)
         overhead_us = (scene.link_of_station * self._attempts) @ scene.overhead_us
@@ -91,12 +94,12 @@ class FixedPoint:
         """Go one step; return R_u."""
         times = self._exchange()
         tau = attempt_probability(mean_count(self._stages))
-        attempts = attempts_of(self._scene, tau, self._clear, self._blocked, times)
+        attempts = attempts_of(self._scene, tau, self._clear, self._kept_silent(), times)
         occupancy = self._statics.occupancy(np.maximum(attempts.activity, LEAST_ACTIVITY))
-        self._clear = np.clip(occupancy.clear, 0.0, 1.0)
-        traffic = self._traffic(tau, attempts, occupancy, times)
         gain = self._scene.settings.approximations.gain
-        fresh = silence_of(self._scene, self._clear, self._attempts)
+        self._clear = gain * np.clip(occupancy.clear, 0.0, 1.0) + (1.0 - gain) * self._clear
+        traffic = self._traffic(tau, attempts, occupancy, times)
+        fresh = silence_of(self._scene, self._clear, self._attempts, self._answered)
         self._silence = Silence(
             *(
                 gain * new + (1.0 - gain) * old
@@ -106,10 +109,17 @@ class FixedPoint:
         self._learn(traffic, attempts, with_chains=with_chains)
         return traffic.rate_per_us
 
+    def _kept_silent(self) -> FloatArray:
+        """Return how often summed power or the CTS of hidden stations silence each station."""
+        return 1.0 - (1.0 - self._blocked) * (1.0 - np.minimum(self._silenced, LARGEST_ON))
+
     def _exchange(self) -> Exchange:
         """Return T_u, ovh_u and the silence after frames, averaged over links (MODEL 3.1)."""
         own = self._scene.link_of_station * self._attempts
-        return Exchange(own @ self._scene.on_air_us, own @ self._scene.overhead_us, *self._silence)
+        on_air_us = self._scene.on_air_us
+        if self._scene.settings.rts_cts:
+            on_air_us = self._answered * on_air_us + (1.0 - self._answered) * RTS_us
+        return Exchange(own @ on_air_us, own @ self._scene.overhead_us, *self._silence)
 
     def _traffic(
         self, tau: FloatArray, attempts: Attempts, occupancy: Occupancy, times: Exchange
@@ -128,6 +138,7 @@ class FixedPoint:
             times,
             self._loss,
             self._attempts,
+            (self._scene.link_of_station * self._attempts) @ self._answered,
         )
 
     def _learn(self, traffic: Traffic, attempts: Attempts, *, with_chains: bool) -> None:
@@ -136,12 +147,13 @@ class FixedPoint:
         base = base_success(
             self._scene, statics.noise_hazard, attempts.same_slot, statics.same_slot_loss
         )
+        base = base * self._aware(traffic)
         gates = self._gates(traffic)
         if len(statics.hostile):
             hidden = hidden_loss(self._scene, statics, traffic, gates)
             base = base * self._partner_collisions(traffic, gates[1])
             base = base * self._ack_survival(traffic, hidden)
-            success, parts = self._success(base, hidden)
+            success, parts = self._success(base, hidden, hidden.survives)
             if with_chains and self._joint.count:
                 self._joint.update(
                     self._attempts,
@@ -150,11 +162,42 @@ class FixedPoint:
                     (hidden.survives, hidden.hit, hidden.share),
                     traffic.cycle_us,
                 )
-                success, _ = self._success(base, hidden)
+                success, _ = self._success(base, hidden, hidden.survives)
+            self._learn_handshake(traffic, hidden)
         else:
             base = base * self._ack_survival(traffic, None)
             success = np.repeat(base[:, None], STAGES, axis=1)
         self._visit(success)
+
+    def _aware(self, traffic: Traffic) -> FloatArray:
+        """Return what stations that missed an RTS leave of frames, theirs and others'."""
+        scene, unread = self._scene, self._statics.unread
+        if unread is None:
+            return np.ones(len(scene.links))
+        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
+        starts = unaware_starts(unread, sending, self._clear, traffic.tau)
+        into = starts[scene.station] * unread.exposed * self._answered[:, None]  # (l, w)
+        lost = 1.0 - (1.0 - into * unread.kill).prod(axis=1)
+        per_us = (scene.link_of_station * self._attempts) @ into * traffic.rate_per_us[:, None]
+        part = (per_us / traffic.rate_per_us).T[scene.station]  # of attempts of l, into u
+        own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
+        return (1.0 - lost) * (1.0 - own_lost)
+
+    def _learn_handshake(self, traffic: Traffic, hidden: HiddenLoss) -> None:
+        """Update which RTS are answered, and who is silenced by CTS of hidden receivers."""
+        scene, statics = self._scene, self._statics
+        if not scene.settings.rts_cts:
+            return
+        gain = scene.settings.approximations.gain
+        by_stage, _ = self._success(np.ones(len(scene.links)), hidden, hidden.answered)
+        fresh = (self._link_stages * by_stage).sum(axis=1)
+        self._answered = gain * fresh + (1.0 - gain) * self._answered
+        after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
+        own = scene.link_of_station * self._attempts
+        heard_us = own @ (statics.silenced * after_cts_us[:, None])  # (w, u)
+        on = np.clip(traffic.on * (heard_us / traffic.times.busy_us[:, None]).T, 0.0, LARGEST_ON)
+        silenced = 1.0 - (1.0 - on).prod(axis=1)
+        self._silenced += gain * (silenced - self._silenced)
 
     def _visit(self, success: FloatArray) -> None:
         """Update stages, attempt shares and losses (MODEL 3.11)."""
@@ -168,16 +211,18 @@ class FixedPoint:
         self._stages = (self._scene.link_of_station * self._attempts) @ self._link_stages
         self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
 
-    def _success(self, base: FloatArray, hidden: HiddenLoss) -> tuple[FloatArray, FloatArray]:
+    def _success(
+        self, base: FloatArray, hidden: HiddenLoss, survives: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
         """Return tot_l(a), and sbar_r(a) of each relation (MODEL 3.9)."""
         hostile = self._statics.hostile
         given = self._joint.partner_stages(hidden.alone)
-        parts = np.einsum("rab,rb->ra", given, hidden.survives)
+        parts = np.einsum("rab,rb->ra", given, survives)
         logs = hidden.phi[:, None] * np.log(np.maximum(parts, 1e-12))
         log_sums = np.zeros((len(base), STAGES))
         np.add.at(log_sums, hostile.link, logs)
-        survives = np.minimum(1.0, np.exp(log_sums) * hidden.correction[:, None])
-        return base[:, None] * survives, parts
+        whole = np.minimum(1.0, np.exp(log_sums) * hidden.correction[:, None])
+        return base[:, None] * whole, parts
 
     def _gates(self, traffic: Traffic) -> tuple[FloatArray, FloatArray]:
         """Return al and be of each relation, and update B (MODEL 3.6)."""
@@ -214,8 +259,11 @@ class FixedPoint:
             return np.ones(len(scene.links))
         spared = np.ones((len(scene.links), scene.station_count))
         if hidden is not None:
-            spared[hostile.link, hostile.station] = 1.0 - hidden.kill
+            kill = np.where(hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill)
+            spared[hostile.link, hostile.station] = 1.0 - kill
         sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
+        if scene.settings.rts_cts:
+            sent = sent * 2.0  # each data frame is answered by a CTS before and an ACK after
         window_us = scene.protected_us[acks.link] + scene.ack_us[acks.other]
         kill = acks.kill * spared[acks.link, scene.station[acks.other]]
         logs = np.log(np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill)))

@@ -8,13 +8,25 @@ from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations
 from ncsim_wifi.spatial.collisions import same_slot_loss
 from ncsim_wifi.spatial.energy import EnergySets, GateMasks, energy_sets, gate_masks
+from ncsim_wifi.spatial.handshake import (
+    CTS_NOTICED_us,
+    SLOTS_MET,
+    Unread,
+    fatal_slots,
+    fate_of,
+    silenced_share,
+    unmet,
+    unread_of,
+)
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
-from ncsim_wifi.spatial.relations import Hostile, hostile_relations, near_interferers
+from ncsim_wifi.spatial.relations import (
+    RTS_RATIO_dB,
+    Hostile,
+    hostile_relations,
+    near_interferers,
+)
 from ncsim_wifi.spatial.scene import Scene
-
-CTS_WINDOW_us = 48.0  # RTS, SIFS and the first slot of the CTS (MODEL 3.8)
-BEFORE_CTS_us = 44.0  # RTS and SIFS
 
 
 @dataclass(frozen=True)
@@ -27,6 +39,10 @@ class Statics:
         window_us: V_r, the window in which an interferer must not begin.
         alone_hazard: h(w) of each relation.
         by_cts: Whether a relation is one of stations kept apart by CTS only.
+        by_cts_survives: What handshakes of these survive, by stage of the other.
+        by_cts_missed: How often neither meets the other at all.
+        silenced: Whose CTS silence whom, shape (links, stations).
+        unread: Who may begin unawares, under RTS/CTS.
         stops_at_cts: Whether the sender defers from the interferer's CTS on.
         noise_hazard: h_noise of each link.
         same_slot_loss: sync[l, w].
@@ -42,6 +58,10 @@ class Statics:
     window_us: FloatArray
     alone_hazard: FloatArray
     by_cts: BoolArray
+    by_cts_survives: FloatArray
+    by_cts_missed: FloatArray
+    silenced: FloatArray
+    unread: Unread | None
     stops_at_cts: BoolArray
     noise_hazard: FloatArray
     same_slot_loss: FloatArray
@@ -60,12 +80,18 @@ def statics_of(scene: Scene) -> Statics:
     energy = energy_sets(scene)
     hazards = ack_hazard(scene, near.noise_mW)
     own = scene.station[hostile.link]
+    alone = hostile.delta[:, 0]
+    fatal = fatal_slots(fate_of(scene, hostile, alone, RTS_RATIO_dB), scene.data_us[hostile.link])
     return Statics(
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
         hostile,
         _windows_us(scene, hostile),
-        hostile.delta[:, 0],
+        alone,
         scene.silenced_by_cts[own, hostile.station],
+        unmet(fatal),
+        unmet(np.full_like(fatal, SLOTS_MET)),
+        silenced_share(scene),
+        unread_of(scene, RTS_RATIO_dB) if scene.settings.rts_cts else None,
         _hears_cts_of(scene, own, hostile.station),
         _added_noise_hazard(scene, near.noise_mW),
         same_slot_loss(scene, near.noise_mW),
@@ -96,7 +122,7 @@ def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
     hears_cts = scene.hears_receiver[link, hostile.station]
     whole_us = scene.on_air_us[link]
     window_us = np.where(hostile.is_strong, whole_us, window_us)
-    return np.where(hears_cts | hostile.by_cts_only, CTS_WINDOW_us, window_us)
+    return np.where(hears_cts | hostile.by_cts_only, CTS_NOTICED_us, window_us)
 
 
 def _hears_cts_of(scene: Scene, own: IntArray, other: IntArray) -> BoolArray:

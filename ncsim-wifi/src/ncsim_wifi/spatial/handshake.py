@@ -1,0 +1,155 @@
+"""What RTS and CTS change: short failures, and stations silenced by a CTS alone.
+
+An exchange of two stations that hear each other's CTS, and not each other, is decided in a few
+slots: counters run in step after each exchange, an RTS lasts 3.1 slots, and the CTS that
+silences the other is noticed after 5.3. Counting the slots in which a start of the other is
+fatal gives what a handshake survives.
+
+Source: 802.11-2020, 10.3.2.4 (NAV) and 10.3.2.9 (RTS/CTS); docs/csma-spatial.md.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.mac.timing import AIFS_us, CTS_us, RTS_us, SIFS_us, SLOT_us
+from ncsim_wifi.quantities import BoolArray, FloatArray, dBm_from_mW
+from ncsim_wifi.spatial.backoff import WINDOWS
+from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.relations import Hostile
+from ncsim_wifi.spatial.scene import Scene
+
+DETECTION_us = 4.0  # of a preamble
+PHY_RX_START_us = 20.0  # of a legacy OFDM frame
+CTS_NOTICED_us = RTS_us + SIFS_us + DETECTION_us  # after the start of the RTS
+BEFORE_CTS_us = RTS_us + SIFS_us
+ACK_TIMEOUT_us = 45.0
+# who decoded an RTS is free again if nothing follows it for this long (NAVTimeout)
+NAV_TIMEOUT_us = 2 * SIFS_us + CTS_us + PHY_RX_START_us + 2 * SLOT_us
+
+SLOTS_EARLY = float(int(CTS_NOTICED_us / SLOT_us))  # the other began first
+SLOTS_IN_RTS = float(int(RTS_us / SLOT_us))  # the other begins during the RTS
+SLOTS_AFTER_RTS = SLOTS_EARLY - SLOTS_IN_RTS  # before the CTS silences it
+SLOTS_MET = 2 * SLOTS_EARLY + 1
+
+
+class Fate(NamedTuple):
+    """What starts of the other station within the slots of a handshake do.
+
+    Args:
+        captures: Whether the RTS is received although the other begins with or after it.
+        hears_cts: Whether the sender receives the CTS although the other sends.
+        kill: Part of data frames that an RTS of the other destroys.
+    """
+
+    captures: BoolArray
+    hears_cts: BoolArray
+    kill: FloatArray
+
+
+def fatal_slots(fate: Fate, data_us: FloatArray) -> FloatArray:
+    """Return in how many slots a start of the other is fatal, by its stage, (relations, 7).
+
+    If the other began first the receiver is busy or silenced, whatever the powers. If it
+    begins after the RTS it misses the CTS, and may try again while the data are under way.
+
+    Args:
+        fate: What a start does.
+        data_us: Duration of the data frames, shape (relations,).
+    """
+    lost = (~fate.captures).astype(np.float64)[:, None]
+    wait_us = BEFORE_CTS_us + ACK_TIMEOUT_us + AIFS_us
+    again = np.clip((data_us[:, None] - wait_us + CTS_us) / (2.0 * WINDOWS * SLOT_us), 0.0, 1.0)
+    after = np.maximum(~fate.hears_cts[:, None], fate.kill[:, None] * again)
+    return SLOTS_EARLY + lost * (1.0 + SLOTS_IN_RTS) + after * SLOTS_AFTER_RTS
+
+
+def unmet(slots: FloatArray) -> FloatArray:
+    """Return the probability that the other does not begin in a number of slots, by its stage.
+
+    Its attempt probability in a stage is 2 / (W + 1) per slot: Bianchi (2000), Eq. 7, for one
+    window.
+
+    >>> [round(p, 3) for p in unmet(np.full(7, 1.0)).tolist()][:2]
+    [0.882, 0.939]
+    """
+    return np.asarray((1.0 - 2.0 / (WINDOWS + 1.0)) ** slots)
+
+
+def fate_of(scene: Scene, hostile: Hostile, hazard_alone: FloatArray, rts_ratio_dB: float) -> Fate:
+    """Return the fate of handshakes of each relation.
+
+    Args:
+        scene: The active links.
+        hostile: Hidden relations.
+        hazard_alone: h(w) of each.
+        rts_ratio_dB: Ratio above which control frames survive a collision.
+    """
+    link, other = hostile.link, hostile.station
+    noise_mW = scene.plant.noise_mW
+    at_receiver_dB = scene.ratio_dB(scene.at_receiver_mW[other, link] + noise_mW, link)
+    own = scene.station[link]
+    cts_dBm = scene.receiver_at_station_dBm[link, own]
+    at_sender_dB = cts_dBm - dBm_from_mW(scene.at_station_mW[other, own] + noise_mW)
+    kill = -np.expm1(-hazard_alone * RTS_us / scene.protected_us[link])
+    return Fate(at_receiver_dB >= rts_ratio_dB, at_sender_dB >= rts_ratio_dB, kill)
+
+
+SLOTS_IN_GAP = 2.0  # counts that end after AIFS, before the data that follow an unheard CTS
+
+
+class Unread(NamedTuple):
+    """Who may begin between the RTS and the data of a station it senses but did not understand.
+
+    Args:
+        spoilt: Whether x, unheard by w, spoils the RTS of u at w, shape (u, w, x).
+        exposed: Whether w does not hear the CTS of link l either, shape (links, stations).
+        kill: Part of data of l that w destroys, shape (links, stations).
+        own_kill: Part of frames of l lost when it begins within an exchange of w; all where
+            the receiver decoded the RTS and answers nobody else.
+    """
+
+    spoilt: BoolArray
+    exposed: FloatArray
+    kill: FloatArray
+    own_kill: FloatArray
+
+
+def unread_of(scene: Scene, rts_ratio_dB: float) -> Unread:
+    """Return who may begin unawares under RTS/CTS."""
+    at_station_mW = scene.at_station_mW
+    heard, noise_mW = scene.hears_by_power, scene.plant.noise_mW
+    ratio_dB = dBm_from_mW(at_station_mW + 1e-300)[:, :, None] - dBm_from_mW(
+        at_station_mW.T + noise_mW
+    )
+    spoilt = (ratio_dB < rts_ratio_dB) & heard[:, :, None] & ~heard[None, :, :]
+    same = np.arange(scene.station_count)
+    spoilt[same, :, same] = False
+    spoilt[:, same, same] = False
+    rows = np.arange(len(scene.links))[:, None]
+    data_dB = scene.ratio_dB(scene.at_receiver_mW.T + noise_mW, rows)
+    kill = -np.expm1(-hazard(scene.scheme[:, None], data_dB))
+    exposed = heard[scene.station] & ~scene.hears_receiver
+    decoded = scene.at_receiver_mW.T >= 10.0 ** (scene.settings.preamble_dBm / 10.0)
+    return Unread(spoilt, exposed.astype(np.float64), kill, np.where(decoded, 1.0, kill))
+
+
+def unaware_starts(unread: Unread, on: FloatArray, clear: FloatArray, tau: FloatArray) -> FloatArray:
+    """Return how often w begins within an exchange of u that it senses, shape (u, w).
+
+    Args:
+        unread: Who may.
+        on: Probability that x is sending while u may count, shape (u, x).
+        clear: C of the occupancy.
+        tau: Probability of an attempt per decision.
+    """
+    logs = np.log1p(-np.clip(on, 0.0, 0.97))
+    missed = -np.expm1(np.einsum("uwx,ux->uw", unread.spoilt.astype(np.float64), logs))
+    return np.asarray(missed * clear * (1.0 - (1.0 - tau) ** SLOTS_IN_GAP))
+
+
+def silenced_share(scene: Scene) -> FloatArray:
+    """Return which links' CTS silence whom though their sender does not, (links, stations)."""
+    own = scene.station
+    apart = ~scene.senses[own] & (np.arange(scene.station_count)[None, :] != own[:, None])
+    return (apart & scene.hears_receiver).astype(np.float64)
