@@ -37,7 +37,7 @@ def ncsim_components() -> Iterable[Component]:
             factory="ncsim_wifi.interference_models.csma_spatial:csma_spatial",
             summary="Goodput as packets get it: occupancy, capture, hidden stations, back-off.",
             options="ncsim_wifi:schemas/csma_spatial.json",
-            capabilities=frozenset({"needs_radio"}),
+            capabilities=frozenset({"needs_radio", "decides_routes"}),
             source="docs/csma-spatial.md",
         ),
         Component(

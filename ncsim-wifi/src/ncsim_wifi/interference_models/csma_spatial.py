@@ -5,19 +5,20 @@ from functools import partial
 
 import numpy as np
 from ncsim_core.context import BuildContext, ModelCache
-from ncsim_core.contracts.interference_model import Competition, InterferenceModel
-from ncsim_core.network import LinkIndex
+from ncsim_core.contracts.interference_model import Competition, InterferenceModel, RouteRates
+from ncsim_core.network import LinkIndex, Route
 from typing_extensions import override
 
 from ncsim_wifi.phy.mcs import rate_table
 from ncsim_wifi.propagation import is_on_air, propagation, require_positions
-from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.radio import Radio
 from ncsim_wifi.spatial.hazard import hazard_table
 from ncsim_wifi.spatial.occupancy import connected_components
 from ncsim_wifi.spatial.plant import Plant
 from ncsim_wifi.spatial.settings import Settings, Terms
 from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
+from ncsim_wifi.spatial.transfers import Paths, RouteAlone
 
 MAX_SOLVED_SETS = 4096
 RATE_TOLERANCE = 1e-9
@@ -34,6 +35,7 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
     silence: bool = True,
     energy_sensing: bool = True,
     far_noise: bool = True,
+    relaying: bool = True,
 ) -> "CsmaSpatialModel":
     """Return the model; the runs of a process share one per network and options.
 
@@ -47,6 +49,8 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
         silence: Who does not understand a frame waits another time after it.
         energy_sensing: Stations too weak to be sensed alone are sensed together.
         far_noise: Interferers beyond the nearest raise the noise.
+        relaying: Relays of a transfer forward only what they receive; otherwise every hop is
+            saturated.
 
     Raises:
         ScenarioError: Wireless links lack positions; all of them are named.
@@ -62,9 +66,10 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
         energy_sensing,
         far_noise,
     )
+    kind = CsmaSpatialRoutesModel if relaying else CsmaSpatialModel
     return context.cached(
-        ("ncsim_wifi.csma_spatial", radio, radio.draws_from(context.seed), terms),
-        lambda: CsmaSpatialModel(context, radio, terms),
+        ("ncsim_wifi.csma_spatial", radio, radio.draws_from(context.seed), terms, relaying),
+        lambda: kind(context, radio, terms),
     )
 
 
@@ -177,3 +182,95 @@ class CsmaSpatialModel(InterferenceModel):
         sensed = (at_sender_dBm >= plant.settings.sensing_dBm) | (source == plant.source[place])
         heard = plant.power_mW[source, plant.target[place]] > 0.0
         return Competition(int(sensed.sum()), int((heard & ~sensed).sum()))
+
+
+class CsmaSpatialRoutesModel(CsmaSpatialModel):
+    """Gives transfers over several hops what relaying leaves them.
+
+    Transfers that cannot influence each other are solved apart, and every set only once.
+
+    Source: docs/csma-spatial.md; docs/decisions/0002-route-rates.md.
+
+    Args:
+        context: Network.
+        radio: Radio parameters.
+        terms: Which effects count.
+    """
+
+    decides_routes = True
+
+    def __init__(self, context: BuildContext, radio: Radio, terms: Terms) -> None:
+        super().__init__(context, radio, terms)
+        network = context.network
+        self._paths = Paths(self._plant, self._place.tolist(), network.bandwidth_MBps)
+        self._answers = ModelCache(MAX_SOLVED_SETS)
+        self._alone = ModelCache(MAX_SOLVED_SETS)
+
+    @override
+    def route_rates(self, routes: Sequence[Route]) -> RouteRates:
+        in_order = sorted(routes)
+        answer: dict[Route, tuple[float, LinkIndex]] = {}
+        for part in connected_components(self._are_coupled(in_order)):
+            together = tuple(in_order[at] for at in part.tolist())
+            answer |= self._answers.get_or_build(together, partial(self._decided, together))
+        rates_MBps, decisive = zip(*(answer[route] for route in routes), strict=True)
+        return RouteRates(np.array(rates_MBps), decisive)
+
+    def _are_coupled(self, routes: Sequence[Route]) -> BoolArray:
+        """Return which transfers share a link or reach each other by radio, (routes, routes)."""
+        used = sorted({link for route in routes for link in route})
+        column = {link: at for at, link in enumerate(used)}
+        uses = np.zeros((len(routes), len(used)), np.bool_)
+        for row, route in enumerate(routes):
+            uses[row, [column[link] for link in route]] = True
+        places = self._place[used]
+        related = np.eye(len(used), dtype=np.bool_)
+        on_air = np.flatnonzero(places >= 0)
+        related[np.ix_(on_air, on_air)] |= self._coupled[np.ix_(places[on_air], places[on_air])]
+        return np.asarray(uses @ related @ uses.T)
+
+    def _decided(self, routes: tuple[Route, ...]) -> dict[Route, tuple[float, LinkIndex]]:
+        """Return rate and decisive link of transfers that influence each other."""
+        if all(len(route) == 1 for route in routes):
+            return self._saturated(routes)
+        alone = {route: self._route_alone(route) for route in dict.fromkeys(routes)}
+        if len(routes) == 1:
+            return {route: (each.rate_MBps, each.decisive) for route, each in alone.items()}
+        coupled = dict(zip(routes, self._paths.coupled(routes), strict=True))
+        answer = {}
+        for route, (rate_MBps, decisive) in coupled.items():
+            ratio = rate_MBps / alone[route].coupled_MBps if alone[route].coupled_MBps else 0.0
+            answer[route] = (alone[route].rate_MBps * min(1.0, ratio), decisive)
+        return self._within_bandwidth(routes, answer)
+
+    def _saturated(self, routes: tuple[Route, ...]) -> dict[Route, tuple[float, LinkIndex]]:
+        """Return rates of transfers of one hop each: what their links get, shared equally."""
+        links = [link for (link,) in dict.fromkeys(routes)]
+        factors = self.factors(links, links).tolist()
+        return {
+            (link,): (
+                self._paths.bandwidth_MBps[link] * factor / routes.count((link,)),
+                link,
+            )
+            for link, factor in zip(links, factors, strict=True)
+        }
+
+    def _route_alone(self, route: Route) -> RouteAlone:
+        return self._alone.get_or_build(route, lambda: self._paths.route_alone(route))
+
+    def _within_bandwidth(
+        self, routes: tuple[Route, ...], answer: dict[Route, tuple[float, LinkIndex]]
+    ) -> dict[Route, tuple[float, LinkIndex]]:
+        """Return rates scaled down where two rules together would overload a link."""
+        load_MBps: dict[LinkIndex, float] = {}
+        for route in routes:
+            for link in route:
+                load_MBps[link] = load_MBps.get(link, 0.0) + answer[route][0]
+        room = {
+            link: self._paths.bandwidth_MBps[link] / total_MBps if total_MBps else 1.0
+            for link, total_MBps in load_MBps.items()
+        }
+        return {
+            route: (rate_MBps * min(1.0, *(room[link] for link in route)), decisive)
+            for route, (rate_MBps, decisive) in answer.items()
+        }

@@ -78,7 +78,7 @@ def clear_slot_rate_per_us(
 
 
 def attempts_of(
-    scene: Scene, tau: FloatArray, clear: FloatArray, blocked: FloatArray, times: Exchange
+    scene: Scene, tau: FloatArray, clear: FloatArray, able: FloatArray, times: Exchange
 ) -> Attempts:
     """Return the attempts of all stations.
 
@@ -86,14 +86,14 @@ def attempts_of(
         scene: The active links.
         tau: Probability of an attempt per decision of each station.
         clear: C of the occupancy.
-        blocked: B, how often summed power keeps each station silent.
+        able: (1 - B) alpha, how often each station has a frame and is not kept silent otherwise.
         times: How long exchanges take.
     """
-    same_slot = scene.senses * (tau * (1.0 - blocked))[None, :] * clear
+    same_slot = scene.senses * (tau * able)[None, :] * clear
     np.clip(same_slot, 0.0, 1.0, out=same_slot)
     nobody = (1.0 - same_slot).prod(axis=1)
     extra_us = (same_slot * times.deviation_us.T).sum(axis=1) * (1.0 - tau)
-    rate_0 = clear_slot_rate_per_us(tau, nobody * (1.0 - tau), extra_us) * (1.0 - blocked)
+    rate_0 = clear_slot_rate_per_us(tau, nobody * (1.0 - tau), extra_us) * able
     own_wait_us = 1.0 / rate_0 + times.overhead_us - times.silent_us
     rate = 1.0 / np.maximum(own_wait_us, LEAST_OWN_WAIT / rate_0)
     share = first_in_line(same_slot)

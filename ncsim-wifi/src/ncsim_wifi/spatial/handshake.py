@@ -61,7 +61,7 @@ def fatal_slots(fate: Fate, data_us: FloatArray) -> FloatArray:
     wait_us = BEFORE_CTS_us + ACK_TIMEOUT_us + AIFS_us
     again = np.clip((data_us[:, None] - wait_us + CTS_us) / (2.0 * WINDOWS * SLOT_us), 0.0, 1.0)
     after = np.maximum(~fate.hears_cts[:, None], fate.kill[:, None] * again)
-    return SLOTS_EARLY + lost * (1.0 + SLOTS_IN_RTS) + after * SLOTS_AFTER_RTS
+    return np.asarray(SLOTS_EARLY + lost * (1.0 + SLOTS_IN_RTS) + after * SLOTS_AFTER_RTS)
 
 
 def unmet(slots: FloatArray) -> FloatArray:
@@ -130,11 +130,13 @@ def unread_of(scene: Scene, rts_ratio_dB: float) -> Unread:
     data_dB = scene.ratio_dB(scene.at_receiver_mW.T + noise_mW, rows)
     kill = -np.expm1(-hazard(scene.scheme[:, None], data_dB))
     exposed = heard[scene.station] & ~scene.hears_receiver
-    decoded = scene.at_receiver_mW.T >= 10.0 ** (scene.settings.preamble_dBm / 10.0)
+    decoded = 10.0 ** (scene.settings.preamble_dBm / 10.0) <= scene.at_receiver_mW.T
     return Unread(spoilt, exposed.astype(np.float64), kill, np.where(decoded, 1.0, kill))
 
 
-def unaware_starts(unread: Unread, on: FloatArray, clear: FloatArray, tau: FloatArray) -> FloatArray:
+def unaware_starts(
+    unread: Unread, on: FloatArray, clear: FloatArray, tau: FloatArray
+) -> FloatArray:
     """Return how often w begins within an exchange of u that it senses, shape (u, w).
 
     Args:
@@ -152,4 +154,4 @@ def silenced_share(scene: Scene) -> FloatArray:
     """Return which links' CTS silence whom though their sender does not, (links, stations)."""
     own = scene.station
     apart = ~scene.senses[own] & (np.arange(scene.station_count)[None, :] != own[:, None])
-    return (apart & scene.hears_receiver).astype(np.float64)
+    return np.asarray(apart & scene.hears_receiver, np.float64)

@@ -10,8 +10,8 @@ import numpy as np
 from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import Exchange
-from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.gaps import Gaps, counter_law, mean_remaining_count, survival
+from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import joint_kill, meets_probability, overlap_us
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics

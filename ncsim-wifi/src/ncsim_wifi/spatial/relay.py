@@ -47,6 +47,33 @@ def clique_efficiency(size: int, *, rts_cts: bool) -> float:
     return efficiency(size, REFERENCE_RATE_Mbps, timing) / alone
 
 
+def clique_limits_MBps(
+    plant: Plant, hops: Sequence[int], clean_MBps: Sequence[float]
+) -> list[tuple[float, tuple[int, ...]]]:
+    """Return what each clique of conflicting hops, which share their air, lets through.
+
+    Source: MODEL 5.
+
+    Args:
+        plant: All links of the network.
+        hops: The links of the route, in order.
+        clean_MBps: What each delivers alone, greater than 0.
+
+    Returns:
+        For each maximal clique its limit and its members, as places in ``hops``.
+    """
+    if not hops:
+        return []
+    return [
+        (
+            clique_efficiency(len(clique), rts_cts=plant.settings.rts_cts)
+            / sum(1.0 / clean_MBps[hop] for hop in sorted(clique)),
+            clique,
+        )
+        for clique in maximal_cliques(hop_conflicts(plant, hops))
+    ]
+
+
 def route_goodput_MBps(plant: Plant, hops: Sequence[int]) -> float:
     """Return the end-to-end goodput of one saturated transfer, alone in the network.
 
@@ -61,13 +88,7 @@ def route_goodput_MBps(plant: Plant, hops: Sequence[int]) -> float:
     solo_MBps = plant.solo_MBps[list(hops)].tolist()
     if not all(solo_MBps):
         return 0.0
-    conflicts = hop_conflicts(plant, hops)
-    limits_MBps: list[float] = [
-        clique_efficiency(len(clique), rts_cts=plant.settings.rts_cts)
-        / sum(1.0 / solo_MBps[hop] for hop in clique)
-        for clique in maximal_cliques(conflicts)
-    ]
-    return min(limits_MBps)
+    return min(limit_MBps for limit_MBps, _ in clique_limits_MBps(plant, hops, solo_MBps))
 
 
 def maximal_cliques(related: BoolArray) -> list[tuple[int, ...]]:

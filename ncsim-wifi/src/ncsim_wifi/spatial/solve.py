@@ -76,6 +76,8 @@ class FixedPoint:
         self._loss = np.zeros(links)
         self._answered = np.ones(links)
         self._silenced = np.zeros(stations)
+        self._activity = np.ones(stations)
+        self._packets = np.ones(links)
         self._clear = np.ones((stations, stations))
         self._blocked = np.zeros(stations)
         overhead_us = (scene.link_of_station * self._attempts) @ scene.overhead_us
@@ -90,11 +92,31 @@ class FixedPoint:
         delivered = rate_per_us[self._scene.station] * self._attempts * (1.0 - self._loss)
         return np.where(self._scene.is_alive, PAYLOAD_MB_us_per_s * delivered, 0.0)
 
+    def step(self, number: int) -> FloatArray:
+        """Go one step; return the packets per us that each station could deliver, by link.
+
+        That is what the link would get if its station served no other and always had a frame.
+        """
+        with_chains = number < STEPS_WITH_CHAINS or number % 2 == 0
+        rate_per_us = self._step(with_chains=with_chains) / self._activity
+        able_per_us = rate_per_us[self._scene.station] * (1.0 - self._loss)
+        return np.where(self._scene.is_alive, able_per_us, 0.0)
+
+    def load(self, activity: FloatArray, packets: FloatArray) -> None:
+        """Set how busy stations are, and how they divide their packets among links.
+
+        Args:
+            activity: alpha, part of the time in which a station has a frame, above 0.
+            packets: Packets per time of each link, up to a factor per station.
+        """
+        self._activity = activity
+        self._packets = packets
+
     def _step(self, *, with_chains: bool) -> FloatArray:
         """Go one step; return R_u."""
         times = self._exchange()
         tau = attempt_probability(mean_count(self._stages))
-        attempts = attempts_of(self._scene, tau, self._clear, self._kept_silent(), times)
+        attempts = attempts_of(self._scene, tau, self._clear, self._able(), times)
         occupancy = self._statics.occupancy(np.maximum(attempts.activity, LEAST_ACTIVITY))
         gain = self._scene.settings.approximations.gain
         self._clear = gain * np.clip(occupancy.clear, 0.0, 1.0) + (1.0 - gain) * self._clear
@@ -109,9 +131,10 @@ class FixedPoint:
         self._learn(traffic, attempts, with_chains=with_chains)
         return traffic.rate_per_us
 
-    def _kept_silent(self) -> FloatArray:
-        """Return how often summed power or the CTS of hidden stations silence each station."""
-        return 1.0 - (1.0 - self._blocked) * (1.0 - np.minimum(self._silenced, LARGEST_ON))
+    def _able(self) -> FloatArray:
+        """Return how often stations have a frame, and neither summed power nor a CTS stops them."""
+        free = (1.0 - self._blocked) * (1.0 - np.minimum(self._silenced, LARGEST_ON))
+        return self._activity * free
 
     def _exchange(self) -> Exchange:
         """Return T_u, ovh_u and the silence after frames, averaged over links (MODEL 3.1)."""
@@ -181,7 +204,7 @@ class FixedPoint:
         per_us = (scene.link_of_station * self._attempts) @ into * traffic.rate_per_us[:, None]
         part = (per_us / traffic.rate_per_us).T[scene.station]  # of attempts of l, into u
         own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
-        return (1.0 - lost) * (1.0 - own_lost)
+        return np.asarray((1.0 - lost) * (1.0 - own_lost))
 
     def _learn_handshake(self, traffic: Traffic, hidden: HiddenLoss) -> None:
         """Update which RTS are answered, and who is silenced by CTS of hidden receivers."""
@@ -205,7 +228,7 @@ class FixedPoint:
         visits = visits_per_packet(np.clip(success, 0.0, 1.0))
         fresh = visits / visits.sum(axis=1, keepdims=True)
         self._link_stages = gain * fresh + (1.0 - gain) * self._link_stages
-        per_packet = 1.0 / self._link_stages[:, 0]
+        per_packet = self._packets / self._link_stages[:, 0]
         own = self._scene.link_of_station * per_packet
         self._attempts = per_packet / own.sum(axis=1)[self._scene.station]
         self._stages = (self._scene.link_of_station * self._attempts) @ self._link_stages
@@ -259,7 +282,9 @@ class FixedPoint:
             return np.ones(len(scene.links))
         spared = np.ones((len(scene.links), scene.station_count))
         if hidden is not None:
-            kill = np.where(hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill)
+            kill = np.where(
+                hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill
+            )
             spared[hostile.link, hostile.station] = 1.0 - kill
         sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
         if scene.settings.rts_cts:

@@ -9,8 +9,8 @@ from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations
 from ncsim_wifi.spatial.collisions import same_slot_loss
 from ncsim_wifi.spatial.energy import EnergySets, GateMasks, energy_sets, gate_masks
 from ncsim_wifi.spatial.handshake import (
-    CTS_NOTICED_us,
     SLOTS_MET,
+    CTS_NOTICED_us,
     Unread,
     fatal_slots,
     fate_of,
@@ -21,8 +21,8 @@ from ncsim_wifi.spatial.handshake import (
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
 from ncsim_wifi.spatial.relations import (
-    RTS_RATIO_dB,
     Hostile,
+    RTS_RATIO_dB,
     hostile_relations,
     near_interferers,
 )

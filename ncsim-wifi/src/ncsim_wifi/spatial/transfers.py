@@ -1,0 +1,152 @@
+"""What transfers over several hops get while others are under way.
+
+Alone, a transfer gets what the clique rule gives (``relay.py``). Others slow it as they do in the
+coupled model: every station is active as much of the time as it needs to pass on what it
+receives, and for each transfer one hop is always busy. Only the ratio of the rates with and
+without the others is taken from it, so that both limits are exact: one transfer alone, and
+transfers of one hop each, which are saturated.
+
+Source: MODEL 5; docs/decisions/0002-route-rates.md.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from ncsim_core.network import LinkIndex, Route
+
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
+from ncsim_wifi.spatial.relay import clique_limits_MBps
+from ncsim_wifi.spatial.scene import scene_of
+from ncsim_wifi.spatial.sharing import Sharing
+from ncsim_wifi.spatial.solve import FixedPoint
+
+STEPS = 12  # after which rates of transfers move by a few percent at most
+LEAST_BUSY = 1e-3
+GAIN = 0.5
+
+
+class RouteAlone(NamedTuple):
+    """A transfer that has the network for itself.
+
+    Args:
+        rate_MBps: What it gets, by the clique rule.
+        decisive: The slowest hop of the tightest clique.
+        coupled_MBps: What the coupled model makes of it.
+    """
+
+    rate_MBps: float
+    decisive: LinkIndex
+    coupled_MBps: float
+
+
+@dataclass(frozen=True)
+class Paths:
+    """The links of a network, as routes use them.
+
+    Args:
+        plant: Those on the radio.
+        place: The place of each link in the plant, -1 for wired ones.
+        bandwidth_MBps: Clean bandwidth of each link.
+    """
+
+    plant: Plant
+    place: Sequence[int]
+    bandwidth_MBps: Sequence[float]
+
+    def route_alone(self, route: Route) -> RouteAlone:
+        """Return what a transfer gets that has the network for itself."""
+        limits = [(self.bandwidth_MBps[link], at) for at, link in enumerate(route)]
+        on_air = [at for at, link in enumerate(route) if self.place[link] >= 0]
+        if min(limits)[0] > 0.0:
+            clean_MBps = [limits[at][0] for at in on_air]
+            hops = [self.place[route[at]] for at in on_air]
+            for limit_MBps, clique in clique_limits_MBps(self.plant, hops, clean_MBps):
+                slowest = min(clique, key=lambda hop: (clean_MBps[hop], hop))
+                limits.append((limit_MBps, on_air[slowest]))
+        rate_MBps, at = min(limits)
+        ((coupled_MBps, _),) = self.coupled([route])
+        return RouteAlone(rate_MBps, route[at], coupled_MBps)
+
+    def coupled(self, routes: Sequence[Route]) -> list[tuple[float, LinkIndex]]:
+        """Return rates and decisive links in the coupled model.
+
+        A fixed number of damped steps from a cold start makes them a function of the routes.
+
+        Args:
+            routes: Sorted; the answer to equal routes is equal.
+        """
+        used = sorted({link for route in routes for link in route})
+        if not any(self.place[link] >= 0 for link in used):
+            bandwidth_MBps = {link: self.bandwidth_MBps[link] for link in used}
+            return Sharing(routes, {link: link for link in used}).divide(bandwidth_MBps)
+        on_air = [link for link in used if self.place[link] >= 0]
+        in_order = self.plant.in_order([self.place[link] for link in on_air])
+        link_at = {self.place[link]: link for link in on_air}
+        return _Coupled(self, routes, used, [link_at[place] for place in in_order]).rates()
+
+
+class _Coupled:
+    """The iteration over activities of stations and rates of transfers.
+
+    Args:
+        paths: The links.
+        routes: Links of each transfer.
+        used: All links in use.
+        on_air: Those on the radio, in the order of the scene.
+    """
+
+    def __init__(
+        self,
+        paths: Paths,
+        routes: Sequence[Route],
+        used: Sequence[LinkIndex],
+        on_air: Sequence[LinkIndex],
+    ) -> None:
+        self._paths, self._routes, self._on_air = paths, routes, on_air
+        places = [paths.place[link] for link in on_air]
+        self._scene = scene_of(paths.plant, places)
+        self._solver = FixedPoint(self._scene)
+        stations = self._scene.station.tolist()
+        wires = {link: -1 - link for link in used if paths.place[link] < 0}
+        self._sharing = Sharing(routes, dict(zip(on_air, stations, strict=True)) | wires)
+        solo_MBps = paths.plant.solo_MBps[places]
+        clean_MBps = np.array([paths.bandwidth_MBps[link] for link in on_air])
+        usable = solo_MBps > 0.0
+        self._scale = np.where(
+            usable, PAYLOAD_MB_us_per_s * clean_MBps / np.where(usable, solo_MBps, 1.0), 0.0
+        )
+        self._able_MBps = {link: paths.bandwidth_MBps[link] for link in wires}
+
+    def rates(self) -> list[tuple[float, LinkIndex]]:
+        """Return the rate in MB/s and the decisive link of each transfer."""
+        activity = np.ones(self._scene.station_count)
+        packets = np.ones(len(self._on_air))
+        answer: list[tuple[float, LinkIndex]] = []
+        for number in range(STEPS):
+            able_MBps = self._solver.step(number) * self._scale
+            self._able_MBps.update(zip(self._on_air, able_MBps.tolist(), strict=True))
+            answer = self._sharing.divide(self._able_MBps)
+            load_MBps = self._load_MBps(answer)
+            busy = self._busy(load_MBps, able_MBps)
+            activity = np.exp(GAIN * np.log(busy) + (1.0 - GAIN) * np.log(activity))
+            fresh = np.maximum(load_MBps / np.maximum(self._scale, LEAST_BUSY), LEAST_BUSY**2)
+            packets = fresh**GAIN * packets ** (1.0 - GAIN)
+            self._solver.load(activity, packets)
+        return answer
+
+    def _load_MBps(self, answer: Sequence[tuple[float, LinkIndex]]) -> FloatArray:
+        carried = dict.fromkeys(self._on_air, 0.0)
+        for route, (rate_MBps, _) in zip(self._routes, answer, strict=True):
+            for link in route:
+                if link in carried:
+                    carried[link] += rate_MBps
+        return np.array(list(carried.values()))
+
+    def _busy(self, load_MBps: FloatArray, able_MBps: FloatArray) -> FloatArray:
+        """Return alpha, for how much of the time each station has something to send."""
+        part = np.where(able_MBps > 0.0, load_MBps / np.maximum(able_MBps, 1e-300), 1.0)
+        stations = np.bincount(self._scene.station, part, minlength=self._scene.station_count)
+        return np.clip(stations, LEAST_BUSY, 1.0)
