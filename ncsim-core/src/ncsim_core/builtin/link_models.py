@@ -7,6 +7,9 @@ from ncsim_core.contracts.link_model import LinkModel
 from ncsim_core.errors import ScenarioError
 from ncsim_core.network import LinkRates, Network
 
+MAX_NAMED = 8
+"""Links that a message lists."""
+
 
 class StaticLinkModel(LinkModel):
     """Gives each link the bandwidth of the scenario file."""
@@ -18,7 +21,8 @@ class StaticLinkModel(LinkModel):
     def rate_links(self, network: Network) -> LinkRates:
         bare = [link.id for link in network.links if link.bandwidth_MBps is None]
         if bare:
-            names = ", ".join(map(repr, bare))
+            names = ", ".join(map(repr, bare[:MAX_NAMED]))
+            names += f" and {len(bare) - MAX_NAMED} more" if len(bare) > MAX_NAMED else ""
             raise ScenarioError(
                 f"link model static: links without bandwidth: {names}; give each a bandwidth in "
                 "MB/s, or choose a link model that derives it, such as wifi"

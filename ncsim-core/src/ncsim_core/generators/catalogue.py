@@ -61,7 +61,12 @@ def _amounts(description: str, default: object, **bounds: object) -> Schema:
         "additionalProperties": False,
     }
     listed = {"type": "array", "items": number, "minItems": 1}
-    return {"description": description, "anyOf": [number, listed, drawn], "default": default}
+    by_form = {
+        "if": {"type": "array"},
+        "then": listed,
+        "else": {"if": {"type": "object"}, "then": drawn, "else": number},
+    }
+    return {"description": description, **by_form, "default": default}
 
 
 NETWORK_PROPERTIES: Final[Mapping[str, Schema]] = {

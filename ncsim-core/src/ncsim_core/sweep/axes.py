@@ -75,6 +75,15 @@ def levels_of(values: Value, place: Path) -> tuple[Sequence[Value], list[Problem
         return [], [Problem(place, str(error))]
 
 
+def repeated(values: Sequence[Value]) -> Iterator[int]:
+    """Yield where a value stands that stands there before: its runs would count double.
+
+    >>> list(repeated([3, 4, 3]))
+    [2]
+    """
+    return (number for number, value in enumerate(values) if value in values[:number])
+
+
 def combinations(axes: Sequence[Axis], seeds: Sequence[int]) -> Iterator[Run]:
     """Yield every combination of levels and seeds.
 
@@ -126,6 +135,10 @@ def _range(row: Mapping[str, Any]) -> list[Value]:
     [1.0, 10.0, 100.0]
     """
     start, end = row["from"], row["to"]
+    if "count" in row and "step" in row:
+        raise ValueError("give a step or a count, not both")
+    if "scale" in row and "count" not in row:
+        raise ValueError("a scale needs a count of values")
     if "count" in row:
         return _spread(start, end, row["count"], row.get("scale", "linear"))
     step = row.get("step", 1)

@@ -1,11 +1,12 @@
 """What is wrong with the frame of a sweep, its generators, and each value that it varies."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from ncsim_core.errors import NcsimError
 from ncsim_core.generators.catalogue import DAG_PROPERTIES, DAGS, NETWORK_PROPERTIES, NETWORKS
 from ncsim_core.registry import Registry
+from ncsim_core.scenario.assembly import assemble
 from ncsim_core.scenario.explain import schema_problems
 from ncsim_core.scenario.faults import Path, Problem, shown
 from ncsim_core.scenario.overrides import with_overrides
@@ -119,12 +120,25 @@ def _scenario_problems(
     problems = [*translation.problems, *schema_problems(translation.document, registry)]
     yield from problems
     if not problems:
+        yield from _making_problems(run, resolver, registry)
+
+
+def _making_problems(run: Run, resolver: Resolver, registry: Registry) -> Iterator[Problem]:
+    """Yield what keeps network, DAGs and models from being made."""
+    steps: tuple[tuple[Path, Callable[[], object]], ...] = (
+        (("scenario", "network"), lambda: resolver.network(run)),
+        (("scenario", "dags"), lambda: resolver.scenario(run)),
+        (("scenario",), lambda: assemble(resolver.scenario(run), registry)),
+    )
+    for path, make in steps:
         try:
-            resolver.scenario(run)
+            make()
         except NcsimError as error:
-            yield Problem(("scenario",), str(error))
+            yield Problem(path, str(error))
+            return
         except (KeyError, TypeError, ValueError) as error:
-            yield Problem(("scenario",), f"these rows are no scenario: {error!r}")
+            yield Problem(path, f"these rows are no scenario: {error!r}")
+            return
 
 
 def _placed(problem: Problem, plan: SweepPlan, level: tuple[Axis, int] | None) -> Problem:
@@ -133,10 +147,13 @@ def _placed(problem: Problem, plan: SweepPlan, level: tuple[Axis, int] | None) -
     dotted = ".".join(map(str, inner[1:] if inner[:1] == ("config",) else inner))
     for axis in plan.axes:
         for path, place in zip(axis.paths, axis.places, strict=True):
+            if problem.is_about_key and path.startswith(dotted):
+                meant = problem.suggestion or did_you_mean(dotted, ("network", "dags"))
+                return Problem(place, problem.message, path, meant, is_about_key=True)
             if dotted == path or dotted.startswith(f"{path}."):
                 number = level[1] if level is not None and level[0] is axis else 0
                 return _moved(problem, (*place, number))
-    if level is not None and problem.path == ("scenario",):
+    if level is not None and len(problem.path) == 1:
         return _moved(problem, (*level[0].places[0], level[1]))
     return _moved(problem, (*BASE, *inner))
 

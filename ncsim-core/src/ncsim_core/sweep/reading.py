@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -12,7 +13,7 @@ from ncsim_core.scenario.loader import load_scenario
 from ncsim_core.scenario.published_form import translated
 from ncsim_core.scenario.source import Origins, Source, located, read_document, read_source
 from ncsim_core.scenario.wording import did_you_mean
-from ncsim_core.sweep.axes import Axis, levels_of
+from ncsim_core.sweep.axes import Axis, levels_of, repeated
 from ncsim_core.sweep.checking import frame_problems, value_problems
 from ncsim_core.sweep.plan import Base, RunLimits, SweepPlan
 from ncsim_core.sweep.where import ConditionError, condition, spellings
@@ -66,12 +67,14 @@ class _Reading:
             description=rows.get("description", ""),
             base=base,
             axes=tuple(axes),
-            where=tuple(_texts(rows.get("where", []))),
             seeds=_seeds(replicate.get("seeds", [base.config.get("seed", DEFAULT_SEED)])),
             pair=None if "pair" not in replicate else _pair(replicate["pair"], columns),
             limits=RunLimits(**rows.get("limits", {})),
         )
-        self._refuse(value_problems(plan, self._registry))
+        unclear = list(_condition_problems(columns, rows))
+        self._refuse([*unclear, *value_problems(plan, self._registry)])
+        plan = replace(plan, where=tuple(_texts(rows.get("where", []))))
+        self._refuse(_fit_problems(plan, rows))
         return plan
 
     def _refuse(self, problems: Sequence[Problem] | Iterator[Problem]) -> None:
@@ -127,7 +130,7 @@ def _axes(rows: Mapping[str, Any]) -> tuple[list[Axis], list[Problem]]:
     for path, values in rows.get("vary", {}).items():
         place = (*SWEEP, "vary", path)
         levels, faults = levels_of(values, place)
-        problems += faults
+        problems += [*faults, *_repetitions(levels, place)]
         axes.append(Axis((path,), tuple((level,) for level in levels), (place,)))
     for number, group in enumerate(rows.get("zip", [])):
         places = [(*SWEEP, "zip", number, path) for path in group]
@@ -138,9 +141,17 @@ def _axes(rows: Mapping[str, Any]) -> tuple[list[Axis], list[Problem]]:
             message = f"lists that go together must be equally long, not {lengths}"
             problems.append(Problem((*SWEEP, "zip", number), message))
             continue
-        columns = zip(*(levels for levels, _ in found), strict=True)
-        axes.append(Axis(tuple(group), tuple(columns), tuple(places)))
+        rows_together = tuple(zip(*(levels for levels, _ in found), strict=True))
+        problems += _repetitions(rows_together, places[0])
+        axes.append(Axis(tuple(group), rows_together, tuple(places)))
     return axes, problems
+
+
+def _repetitions(levels: Sequence[Any], place: Path) -> Iterator[Problem]:
+    for number in repeated(levels):
+        level = levels[number]
+        value = ", ".join(map(shown, level)) if isinstance(level, tuple) else shown(level)
+        yield Problem((*place, number), f"{value} is listed twice; its runs would count double")
 
 
 def _name_problems(
@@ -151,14 +162,16 @@ def _name_problems(
         for part in ("network", "dags"):
             if part not in base and part not in columns:
                 yield Problem(("sweep", "base"), f"{part!r} is missing, and no scenario is given")
-    for column in {each for each in columns if columns.count(each) > 1}:
-        yield Problem(SWEEP, f"{column!r} is varied twice")
+    for number, group in enumerate(rows.get("zip", [])):
+        for column in group:
+            if columns.count(column) > 1:
+                place = (*SWEEP, "zip", number, column)
+                yield Problem(place, f"{column!r} is varied twice", column, is_about_key=True)
     if "seed" in columns:
         yield Problem(
             (*SWEEP, "vary", "seed"), "seeds are not varied; list them in replicate.seeds"
         )
     yield from _pair_problems(columns, replicate)
-    yield from _condition_problems(columns, rows)
 
 
 def _pair_problems(columns: Sequence[str], replicate: Mapping[str, Any]) -> Iterator[Problem]:
@@ -176,6 +189,18 @@ def _condition_problems(columns: Sequence[str], rows: Mapping[str, Any]) -> Iter
         except ConditionError as error:
             is_lone = isinstance(rows["where"], str)
             yield Problem(("sweep", "where") if is_lone else ("sweep", "where", number), str(error))
+
+
+def _fit_problems(plan: SweepPlan, rows: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield that a condition does not fit the values, or that no combination meets it."""
+    place = (*SWEEP, "where")
+    try:
+        count = sum(1 for _ in plan.runs())
+    except ConditionError as error:
+        yield Problem(place, str(error), shown(rows["where"]))
+        return
+    if count == 0:
+        yield Problem(place, "no combination of values meets it", shown(rows["where"]))
 
 
 def _texts(where: str | list[str]) -> list[str]:

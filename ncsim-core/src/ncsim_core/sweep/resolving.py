@@ -76,6 +76,16 @@ class Resolver:
             config=replace(parts.config.made, seed=parts.seed),
         )
 
+    def network(self, run: Run) -> Network:
+        """Return the network of a run.
+
+        Raises:
+            NcsimError: The values of the run do not make one.
+        """
+        network = self.network_parameters(self.plan.values_of(run))
+        seed = _seed_of(network, NETWORKS, self.plan.draw_seed(run))
+        return self._network(canonical(network), seed).made
+
     def key(self, run: Run) -> str:
         """Return what identifies the result of a run: scenario, seed and plug-in versions.
 

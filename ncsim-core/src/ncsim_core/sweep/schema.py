@@ -72,7 +72,13 @@ def structure(
         "limits": _limits(),
     }
     sweep = _object(properties, "A base and what is varied.", ["base"])
-    return {"type": "object", "properties": {"sweep": sweep}, "required": ["sweep"]}
+    pointer = {"type": "string", "description": "Where editors find this schema."}
+    return {
+        "type": "object",
+        "properties": {"sweep": sweep, "$schema": pointer},
+        "required": ["sweep"],
+        "additionalProperties": False,
+    }
 
 
 def generator_schema(
@@ -126,9 +132,9 @@ def _levels() -> Schema:
         ["from", "to"],
     )
     return {
-        "if": {"type": "array"},
-        "then": {"type": "array", "minItems": 1, "description": "The values."},
-        "else": span,
+        "if": {"type": "object"},
+        "then": span,
+        "else": {"type": "array", "minItems": 1, "description": "The values, each once."},
     }
 
 
