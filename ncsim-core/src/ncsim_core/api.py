@@ -198,8 +198,10 @@ def result_of(simulation: Simulation) -> RunResult:
         tasks=tuple(_task_result(run, simulation) for run in state.tasks),
         transfers=tuple(_transfer_result(each, simulation) for each in state.transfers.values()),
         links=tuple(
-            LinkResult(link.id, network.bandwidth_MBps[index], state.links[index].served_MB)
-            for index, link in enumerate(network.links)
+            LinkResult(link.id, bandwidth_MBps, served_MB)
+            for link, bandwidth_MBps, served_MB in zip(
+                network.links, network.bandwidth_MBps, state.served_MB(), strict=True
+            )
         ),
     )
 

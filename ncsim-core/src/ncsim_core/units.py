@@ -4,7 +4,7 @@ An ``Instant`` is a whole number of microseconds since the start of the run, so 
 means equal. Seconds appear only at the edges: scenario files, metrics, messages.
 """
 
-import math
+from math import ceil
 from typing import TypeAlias
 
 Instant: TypeAlias = int
@@ -48,5 +48,5 @@ def service_time_us(remaining_MB: float, rate_MBps: float) -> Instant:
     >>> service_time_us(1.0, 2.0)
     500000
     """
-    exact_us = remaining_MB / rate_MBps * MICROSECONDS_PER_SECOND
-    return max(0, math.ceil(exact_us - COMPLETION_TOLERANCE_us))
+    exact_us = remaining_MB / rate_MBps * MICROSECONDS_PER_SECOND - COMPLETION_TOLERANCE_us
+    return ceil(exact_us) if exact_us > 0 else 0

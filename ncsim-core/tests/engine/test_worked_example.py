@@ -43,7 +43,7 @@ def test_makespan_is_five_seconds():
 def test_links_serve_four_and_five_megabytes():
     simulation, _ = run_example()
 
-    assert [link.served_MB for link in simulation.state.links] == [4.0, 5.0]
+    assert simulation.state.served_MB() == [4.0, 5.0]
 
 
 def test_every_event_happens_as_printed():

@@ -7,9 +7,9 @@ from typing_extensions import override
 
 from ncsim_core.context import BuildContext
 from ncsim_core.contracts.interference_model import (
-    Competition,
     InterferenceModel,
     InterferenceSession,
+    Unaffected,
 )
 from ncsim_core.network import LinkIndex
 
@@ -38,16 +38,4 @@ class NoInterference(InterferenceModel):
 
     @override
     def open_session(self) -> InterferenceSession:
-        return _NothingChanges()
-
-
-class _NothingChanges(InterferenceSession):
-    @override
-    def update(
-        self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
-    ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
-        return (), ()
-
-    @override
-    def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
-        return [Competition()] * len(links)
+        return Unaffected()

@@ -14,7 +14,7 @@ better what a whole route carries, because relays forward only what they receive
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
 
 from typing_extensions import override
 
@@ -37,6 +37,9 @@ class Competition(NamedTuple):
     contenders: int = 0
     hidden_interferers: int = 0
     hidden_factor: float = 1.0
+
+
+NO_COMPETITION: Final = Competition()
 
 
 class RouteRates(NamedTuple):
@@ -105,7 +108,7 @@ class InterferenceModel(ABC):
     ) -> Sequence[Competition]:
         """Return what each of ``links`` is up against; by default, nothing is known."""
         del active
-        return [Competition()] * len(links)
+        return [NO_COMPETITION] * len(links)
 
     def open_session(self) -> "InterferenceSession":
         """Return a fresh session for one run."""
@@ -172,3 +175,17 @@ class PlainSession(InterferenceSession):
         if self._is_global:
             return sorted(self._factor_by_link)
         return sorted(self._factor_by_link.keys() & set(self._model.reach(switched)))
+
+
+class Unaffected(InterferenceSession):
+    """The session of a model under which no link ever affects another; the engine skips it."""
+
+    @override
+    def update(
+        self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
+    ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
+        return (), ()
+
+    @override
+    def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
+        return [NO_COMPETITION] * len(links)

@@ -4,60 +4,47 @@ Completions come before starts, and task completions before transfer completions
 freed node is available to whatever becomes ready at the same instant (paper, Section V-A).
 """
 
-from dataclasses import dataclass
-from typing import ClassVar, TypeAlias
+from enum import IntEnum
+from typing import Final, NamedTuple
 
-from ncsim_core.engine.state import TaskRun, Transfer
+from ncsim_core.units import Instant
 
 
-@dataclass(frozen=True, slots=True)
-class DagInject:
+class EventKind(IntEnum):
+    """What happens; the value is its place among what happens at one instant."""
+
+    DAG_INJECT = 0
     """A DAG enters: plan it, and release its first tasks."""
-
-    priority: ClassVar[int] = 0
-    dag: int
-
-
-@dataclass(frozen=True, slots=True)
-class TaskComplete:
+    TASK_COMPLETE = 1
     """A task ends: free its node and send its results."""
-
-    priority: ClassVar[int] = 1
-    task: TaskRun
-
-
-@dataclass(frozen=True, slots=True)
-class TransferComplete:
+    TRANSFER_COMPLETE = 2
     """The last byte arrives: free the route and tell the waiting task."""
-
-    priority: ClassVar[int] = 2
-    transfer: Transfer
-
-
-@dataclass(frozen=True, slots=True)
-class TaskReady:
+    TASK_READY = 3
     """All inputs are there: run the task, or queue it if its node is busy."""
-
-    priority: ClassVar[int] = 3
-    task: TaskRun
-
-
-@dataclass(frozen=True, slots=True)
-class TaskStart:
+    TASK_START = 4
     """A task begins on the node that was reserved for it."""
-
-    priority: ClassVar[int] = 4
-    task: TaskRun
-
-
-@dataclass(frozen=True, slots=True)
-class TransferStart:
+    TRANSFER_START = 5
     """Latency is paid: occupy the route and begin byte service."""
 
-    priority: ClassVar[int] = 5
-    transfer: Transfer
+
+# The same as plain numbers: they are used millions of times, and a member is slow to look up.
+DAG_INJECT: Final = int(EventKind.DAG_INJECT)
+TASK_COMPLETE: Final = int(EventKind.TASK_COMPLETE)
+TRANSFER_COMPLETE: Final = int(EventKind.TRANSFER_COMPLETE)
+TASK_READY: Final = int(EventKind.TASK_READY)
+TASK_START: Final = int(EventKind.TASK_START)
+TRANSFER_START: Final = int(EventKind.TRANSFER_START)
 
 
-Event: TypeAlias = (
-    DagInject | TaskComplete | TransferComplete | TaskReady | TaskStart | TransferStart
-)
+class Event(NamedTuple):
+    """Something that has happened.
+
+    Args:
+        at_us: When.
+        kind: What.
+        number: Of the DAG, the task or the transfer.
+    """
+
+    at_us: Instant
+    kind: EventKind
+    number: int

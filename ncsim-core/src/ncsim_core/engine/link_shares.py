@@ -1,65 +1,76 @@
-"""Rates by links: each is shared equally, and a transfer gets the least share on its route."""
+"""Rates by links: each is shared equally, and a transfer gets the least share on its route.
+
+A transfer is looked at again only if a share has grown that was its least, or one has shrunk to no
+more than its rate: nothing else changes the least share on its route or the first link that has it.
+"""
+
+from collections.abc import Iterable
 
 from ncsim_core.engine.moves import Move, Switched
-from ncsim_core.engine.setup import Reach, Setup
+from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
 from ncsim_core.network import LinkIndex
 
-UNKNOWN_SHARE_MBps = -1.0
-"""Share of a link between getting another flow and being looked at."""
 
-
-def moves_by_link(switched: Switched, state: State, setup: Setup) -> list[Move]:
+def moves_by_link(transfer: Transfer, switched: Switched, state: State, setup: Setup) -> list[Move]:
     """Return the transfers whose rate or bottleneck moves, by number.
 
     With global reach, all that are under way.
+
+    Args:
+        transfer: The one that has started or finished.
+        switched: The links that became active or idle by that.
+        state: In which it occupies its route, or has released it.
+        setup: Of the run.
     """
+    links = update_factors(switched, state)
+    if setup.is_global:
+        update_shares(range(len(state.links.flows)), state, setup)
+        affected = dict(state.flows)
+    else:
+        touched = dict.fromkeys((*transfer.route, *links)) if links else transfer.route
+        affected = update_shares(touched, state, setup)
+        if transfer.number in state.flows:
+            affected[transfer.number] = transfer
+    share_of = state.links.share_MBps
+    look_up = share_of.__getitem__
+    moves = []
+    for number, flow in affected.items():
+        least = min(flow.route, key=look_up)  # the first link with the least share
+        rate_MBps = share_of[least]
+        if rate_MBps != flow.rate_MBps or least != flow.bottleneck or setup.is_global:
+            moves.append((number, flow, rate_MBps, least))
+    moves.sort()  # numbers differ, so nothing else is compared
+    return moves
+
+
+def update_factors(switched: Switched, state: State) -> list[LinkIndex]:
+    """Bring interference factors up to date; return the active links whose factor moved."""
+    on, off = switched
+    session = state.interference
+    if session is None or not (on or off):
+        return []
+    links, factors = session.update(on, off)
+    factor_of = state.links.factor
+    for link, factor in zip(links, factors, strict=True):
+        factor_of[link] = factor
+    return list(links)
+
+
+def update_shares(touched: Iterable[LinkIndex], state: State, setup: Setup) -> dict[int, Transfer]:
+    """Bring the shares of active links up to date; return the transfers to look at again."""
+    links, bandwidth_MBps = state.links, setup.bandwidth_MBps
+    flows_on, factor_of, share_of = links.flows, links.factor, links.share_MBps
     affected: dict[int, Transfer] = {}
-    for index in update_shares(switched, state, setup):
-        affected.update(state.links[index].flows)
-    moves = [bottleneck_of(affected[number], state) for number in sorted(affected)]
-    if setup.reach is Reach.GLOBAL:
-        return moves
-    return [
-        move
-        for move in moves
-        if move.rate_MBps != move.flow.rate_MBps or move.bottleneck != move.flow.bottleneck
-    ]
-
-
-def update_shares(switched: Switched, state: State, setup: Setup) -> list[LinkIndex]:
-    """Bring factors and shares up to date; return the active links whose share moved.
-
-    The interference model is asked only about what its ``reach`` of the switched links holds.
-    With global reach, all active links are looked at and returned.
-    """
-    is_global = setup.reach is Reach.GLOBAL
-    touched = dict.fromkeys(range(len(state.links)) if is_global else switched.route)
-    if switched.on or switched.off:
-        links, factors = state.interference.update(switched.on, switched.off)
-        for index, factor in zip(links, factors, strict=True):
-            state.links[index].factor = factor
-            touched[index] = None
-    bandwidth_MBps = setup.network.bandwidth_MBps
-    moved = []
-    for index in touched:
-        link = state.links[index]
-        if not link.flows:
+    for link in touched:
+        flows = flows_on[link]
+        if not flows:
             continue
-        share_MBps = bandwidth_MBps[index] * link.factor / len(link.flows)
-        if share_MBps != link.share_MBps or is_global:
-            link.share_MBps = share_MBps
-            moved.append(index)
-    return moved
-
-
-def bottleneck_of(flow: Transfer, state: State) -> Move:
-    """Return the least share on a route and the first link that has it."""
-    links = state.links
-    least = flow.route[0]
-    least_MBps = links[least].share_MBps
-    for index in flow.route:
-        share_MBps = links[index].share_MBps
-        if share_MBps < least_MBps:
-            least, least_MBps = index, share_MBps
-    return Move(flow, least_MBps, least)
+        share_MBps = bandwidth_MBps[link] * factor_of[link] / len(flows)
+        if share_MBps == share_of[link]:
+            continue
+        share_of[link] = share_MBps
+        for number, flow in flows.items():
+            if share_MBps <= flow.rate_MBps or flow.bottleneck == link:
+                affected[number] = flow  # noqa: PERF403 - a dictionary per link costs more
+    return affected

@@ -6,7 +6,8 @@ number of its dependency.
 """
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from functools import partial
+from typing import Final, Literal, NamedTuple
 
 from ncsim_core.contracts.interference_model import Competition
 from ncsim_core.engine.outcome import Outcome
@@ -38,6 +39,10 @@ class RateChange(NamedTuple):
     bottleneck: LinkIndex
     flows_on_link: int
     competition: Competition
+
+
+rate_change_of: Final = partial(tuple.__new__, RateChange)
+"""Makes a ``RateChange`` of a tuple of its fields, in a third of the time of naming them."""
 
 
 class Observer:

@@ -6,16 +6,18 @@ transfer is credited does not depend on which other links were asked about, and 
 refresh equals global refresh to the last bit.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
-from ncsim_core.engine.events import TransferComplete
-from ncsim_core.engine.link_shares import UNKNOWN_SHARE_MBps, moves_by_link
+from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
+from ncsim_core.engine.events import TRANSFER_COMPLETE
+from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Switched
-from ncsim_core.engine.observer import RateCause, RateChange
+from ncsim_core.engine.observer import RateCause, rate_change_of
 from ncsim_core.engine.route_rates import moves_by_route
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
+from ncsim_core.network import LinkIndex
 from ncsim_core.units import MICROSECONDS_PER_SECOND, service_time_us
 
 Change: TypeAlias = Callable[[State, Transfer], Switched]
@@ -24,111 +26,95 @@ Change: TypeAlias = Callable[[State, Transfer], Switched]
 def refresh(transfer: Transfer, change: Change, state: State, setup: Setup) -> None:
     """Apply one start or finish, then bring every affected transfer up to date."""
     switched = change(state, transfer)  # 1. occupy or release the route
-    moves = rate_moves(switched, state, setup)  # 2. whose rate moves, and to what?
+    if setup.decides_routes:  # 2. whose rate moves, and to what? (Eqs. 1 and 12)
+        moves = moves_by_route(switched, state, setup)
+    else:
+        moves = moves_by_link(transfer, switched, state, setup)
     credit_work(moves, state)  # 3. credit work at the old rates (Eq. 13)
-    assign_rates(moves)  # 4. the new rates (Eqs. 1 and 12)
+    assign_rates(moves)  # 4. the new rates
     reschedule_completions(moves, state)  # 5. the new finish times
     if moves and state.rate_observers:
         report_rates(transfer, change, moves, state)
 
 
 def occupy(state: State, transfer: Transfer) -> Switched:
-    """Put a transfer on every link of its route."""
-    state.flows[transfer.entry.number] = transfer
+    """Put a transfer on every link of its route; return which links become active."""
+    number, flows_on = transfer.number, state.links.flows
+    state.flows[number] = transfer
     on = []
-    for index in transfer.route:
-        link = state.links[index]
-        link.share_MBps = UNKNOWN_SHARE_MBps
-        if not link.flows:
-            link.factor = 1.0
-            on.append(index)
-        link.flows[transfer.entry.number] = transfer
-    return Switched(transfer.route, tuple(on), ())
+    for link in transfer.route:
+        flows = flows_on[link]
+        if not flows:
+            state.links.factor[link] = 1.0
+            on.append(link)
+        flows[number] = transfer
+    return on, ()
 
 
 def release(state: State, transfer: Transfer) -> Switched:
-    """Credit what a transfer still has coming and take it off every link of its route."""
-    del state.flows[transfer.entry.number]
+    """Credit what a transfer still has coming and take it off its links; return the idle ones."""
+    number, flows_on = transfer.number, state.links.flows
+    del state.flows[number]
     off = []
-    for index in transfer.route:
-        link = state.links[index]
-        link.served_MB += transfer.remaining_MB
-        del link.flows[transfer.entry.number]
-        if not link.flows:
-            off.append(index)
+    for link in transfer.route:
+        flows = flows_on[link]
+        del flows[number]
+        if not flows:
+            off.append(link)
     transfer.remaining_MB = 0.0
     transfer.credited_us = state.now_us
     transfer.rate_MBps = 0.0
-    return Switched(transfer.route, (), tuple(off))
-
-
-def rate_moves(switched: Switched, state: State, setup: Setup) -> list[Move]:
-    """Return the transfers whose rate or bottleneck moves, by number.
-
-    With global reach, all that are under way.
-    """
-    if setup.models.interference.decides_routes:
-        return moves_by_route(switched, state, setup)
-    return moves_by_link(switched, state, setup)
+    return (), off
 
 
 def credit_work(moves: Iterable[Move], state: State) -> None:
-    """Credit each transfer up to now at its old rate."""
-    for flow, _, _ in moves:
-        credit(flow, state)
-
-
-def credit(flow: Transfer, state: State) -> None:
-    """Count what a transfer was served since it was last credited (Eq. 13, ``eq:progress``)."""
-    elapsed_us = state.now_us - flow.credited_us
-    if elapsed_us > 0 and flow.rate_MBps > 0:
-        due_MB = flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
-        served_MB = min(flow.remaining_MB, due_MB)
-        flow.remaining_MB -= served_MB
-        for index in flow.route:
-            state.links[index].served_MB += served_MB
-    flow.credited_us = state.now_us
+    """Credit each transfer what it was served since it was last credited (``eq:progress``)."""
+    now_us = state.now_us
+    for _, flow, _, _ in moves:
+        elapsed_us = now_us - flow.credited_us
+        if elapsed_us > 0 and flow.rate_MBps > 0:
+            due_MB = flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
+            flow.remaining_MB -= min(flow.remaining_MB, due_MB)
+        flow.credited_us = now_us
 
 
 def assign_rates(moves: Iterable[Move]) -> None:
     """Give each transfer its new rate, at which every hop must keep up."""
-    for flow, rate_MBps, bottleneck in moves:
+    for _, flow, rate_MBps, bottleneck in moves:
         flow.rate_MBps, flow.bottleneck = rate_MBps, bottleneck
 
 
 def reschedule_completions(moves: Iterable[Move], state: State) -> None:
     """Replace completions: now if nothing is left, none while the rate is zero."""
-    for flow, rate_MBps, _ in moves:
+    queue, now_us = state.queue, state.now_us
+    for number, flow, rate_MBps, _ in moves:
         if flow.completion is not None:
-            state.queue.cancel(flow.completion)
+            queue.cancel(flow.completion)
             flow.completion = None
         if flow.remaining_MB <= 0:
-            after_us = 0
+            at_us = now_us
         elif rate_MBps > 0:
-            after_us = service_time_us(flow.remaining_MB, rate_MBps)
+            at_us = now_us + service_time_us(flow.remaining_MB, rate_MBps)
         else:
             continue
-        flow.completion = state.queue.push(
-            state.now_us + after_us,
-            TransferComplete.priority,
-            TransferComplete(flow),
-            flow.entry.rank,
-        )
+        flow.completion = queue.push(at_us, TRANSFER_COMPLETE, number, flow.entry.rank)
 
 
-def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: State) -> None:
+def report_rates(transfer: Transfer, change: Change, moves: Sequence[Move], state: State) -> None:
     """Show the new rates and what explains them to whoever watches."""
-    cause = RateCause("start" if change is occupy else "finish", transfer.entry.number)
-    competition = state.interference.competition([move.bottleneck for move in moves])
+    cause = RateCause("start" if change is occupy else "finish", transfer.number)
+    flows_on = state.links.flows
+    against = competition_of([bottleneck for _, _, _, bottleneck in moves], state)
     changes = [
-        RateChange(
-            flow.entry.number,
-            rate_MBps,
-            bottleneck,
-            len(state.links[bottleneck].flows),
-            against,
-        )
-        for (flow, rate_MBps, bottleneck), against in zip(moves, competition, strict=True)
+        rate_change_of((number, rate_MBps, bottleneck, len(flows_on[bottleneck]), competition))
+        for (number, _, rate_MBps, bottleneck), competition in zip(moves, against, strict=True)
     ]
     for observer in state.rate_observers:
         observer.rates_assigned(state.now_us, cause, changes)
+
+
+def competition_of(links: Sequence[LinkIndex], state: State) -> Sequence[Competition]:
+    """Return what each of ``links`` is up against now."""
+    if state.interference is None:
+        return [NO_COMPETITION] * len(links)
+    return state.interference.competition(links)

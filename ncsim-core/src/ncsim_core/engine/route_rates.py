@@ -5,7 +5,7 @@ Its answer depends on the routes alone, so only what it changes has to be touche
 
 from ncsim_core.engine.boundary import checked_route_rates
 from ncsim_core.engine.moves import Move, Switched
-from ncsim_core.engine.setup import Reach, Setup
+from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
 from ncsim_core.network import Route
 
@@ -15,21 +15,21 @@ def moves_by_route(switched: Switched, state: State, setup: Setup) -> list[Move]
 
     With global reach, all that are under way.
     """
-    state.interference.update(switched.on, switched.off)
+    if state.interference is not None:
+        state.interference.update(*switched)
     if not state.flows:
         return []
     flows = sorted(state.flows.values(), key=_canonical)
     routes = [flow.route for flow in flows]
     answers = checked_route_rates(setup.models, routes, setup.network)
     moves = [
-        Move(flow, rate_MBps, bottleneck)
+        (flow.number, flow, rate_MBps, bottleneck)
         for flow, (rate_MBps, bottleneck) in zip(flows, answers, strict=True)
-        if setup.reach is Reach.GLOBAL
-        or rate_MBps != flow.rate_MBps
-        or bottleneck != flow.bottleneck
+        if setup.is_global or rate_MBps != flow.rate_MBps or bottleneck != flow.bottleneck
     ]
-    return sorted(moves, key=lambda move: move.flow.entry.number)
+    moves.sort()  # numbers differ, so nothing else is compared
+    return moves
 
 
 def _canonical(flow: Transfer) -> tuple[Route, int]:
-    return flow.route, flow.entry.number
+    return flow.route, flow.number

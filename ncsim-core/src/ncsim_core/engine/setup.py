@@ -7,6 +7,7 @@ the file, so that the engine works on lists.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import NamedTuple
 
 from ncsim_core.contracts.routing_model import RouteTable
@@ -105,6 +106,26 @@ class Setup:
     routes: RouteTable
     limits: Limits
     reach: Reach = Reach.LOCAL
+
+    @cached_property
+    def bandwidth_MBps(self) -> tuple[float, ...]:
+        """Return the clean bandwidth of each link."""
+        return self.network.bandwidth_MBps
+
+    @cached_property
+    def is_global(self) -> bool:
+        """Return whether every refresh looks at everything."""
+        return self.reach is Reach.GLOBAL
+
+    @cached_property
+    def is_without_latency(self) -> bool:
+        """Return whether no link has any latency."""
+        return not any(self.network.latency_s)
+
+    @cached_property
+    def decides_routes(self) -> bool:
+        """Return whether the interference model gives whole routes their rates."""
+        return self.models.interference.decides_routes
 
     @classmethod
     def of(

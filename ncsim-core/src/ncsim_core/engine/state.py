@@ -6,15 +6,14 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from ncsim_core.contracts.interference_model import InterferenceSession, PlainSession
-from ncsim_core.engine.boundary import CheckedQueue, CheckedSession, asked
+from ncsim_core.engine.boundary import CheckedQueue, asked
 from ncsim_core.engine.event_queue import EventQueue
-from ncsim_core.engine.links_in_use import LinksInUse
-from ncsim_core.engine.setup import DependencyEntry, Reach, Setup, TaskEntry
+from ncsim_core.engine.sessions import session_of
 
 if TYPE_CHECKING:
-    from ncsim_core.engine.events import Event
+    from ncsim_core.contracts.interference_model import InterferenceSession
     from ncsim_core.engine.observer import Observer
+    from ncsim_core.engine.setup import DependencyEntry, Setup, TaskEntry
     from ncsim_core.network import LinkIndex, NodeIndex, Route
     from ncsim_core.units import Instant
 
@@ -59,6 +58,7 @@ class Transfer:
     """A dependency on its way between two nodes.
 
     Args:
+        number: Of the dependency.
         entry: The dependency.
         route: The links it occupies, fixed when it was created.
         remaining_MB: Bytes not served up to ``credited_us``.
@@ -71,6 +71,7 @@ class Transfer:
         ended_us: When the last byte was served.
     """
 
+    number: int
     entry: DependencyEntry
     route: Route
     remaining_MB: float
@@ -94,28 +95,31 @@ class NodeState:
 
     Args:
         queue: Tasks that are ready and wait.
-        task: The task that runs or has the node reserved.
+        task: Number of the task that runs or has the node reserved.
     """
 
     queue: CheckedQueue
-    task: TaskRun | None = None
+    task: int | None = None
 
 
 @dataclass(slots=True, eq=False)
-class LinkState:
-    """A link as its transfers see it.
+class LinkStates:
+    """The links as their transfers see them; lists by link index.
 
     Args:
-        flows: Transfers that occupy it, by number, in order of their start.
-        factor: Interference factor while it is active.
-        share_MBps: What each of its flows would get from it (Eq. 1).
-        served_MB: Bytes it has carried, credited so far.
+        flows: Transfers that occupy the link, by number, in order of their start.
+        factor: Interference factor while the link is active.
+        share_MBps: What each of its flows would get from it (Eq. 1), while it is active.
     """
 
-    flows: dict[int, Transfer] = field(default_factory=dict)
-    factor: float = 1.0
-    share_MBps: float = 0.0
-    served_MB: float = 0.0
+    flows: list[dict[int, Transfer]]
+    factor: list[float]
+    share_MBps: list[float]
+
+    @classmethod
+    def idle(cls, count: int) -> LinkStates:
+        """Return links that nobody uses."""
+        return cls([{} for _ in range(count)], [1.0] * count, [0.0] * count)
 
 
 @dataclass(slots=True, eq=False)
@@ -127,8 +131,8 @@ class State:
         transfers: Transfers created so far, by number of their dependency.
         flows: Those that occupy their route, in order of their start.
         nodes: All nodes by index.
-        links: All links by index.
-        interference: The model's session of this run.
+        links: All links.
+        interference: The model's session of this run, ``None`` if no link affects another.
         queue: What is going to happen.
         observers: Who watches.
         rate_observers: Those who want to see rates.
@@ -144,9 +148,9 @@ class State:
     transfers: dict[int, Transfer]
     flows: dict[int, Transfer]
     nodes: list[NodeState]
-    links: list[LinkState]
-    interference: InterferenceSession
-    queue: EventQueue[Event]
+    links: LinkStates
+    interference: InterferenceSession | None
+    queue: EventQueue
     observers: tuple[Observer, ...] = ()
     rate_observers: tuple[Observer, ...] = ()
     now_us: Instant = 0
@@ -160,27 +164,26 @@ class State:
     def of(cls, setup: Setup) -> State:
         """Return the state before the first event."""
         models = setup.models
-        who_queues = models.identity("queue_model")
-        who_interferes = models.identity("interference_model")
-        session = asked(who_interferes, lambda: _session(setup))
+        who = models.identity("queue_model")
         return cls(
             tasks=[TaskRun(entry, entry.incoming_count) for entry in setup.tasks],
             transfers={},
             flows={},
             nodes=[
-                NodeState(CheckedQueue(asked(who_queues, models.new_queue), who_queues))
+                NodeState(CheckedQueue(asked(who, models.new_queue), who))
                 for _ in setup.network.nodes
             ],
-            links=[LinkState() for _ in setup.network.links],
-            interference=CheckedSession(session, who_interferes),
+            links=LinkStates.idle(len(setup.network.links)),
+            interference=session_of(setup),
             queue=EventQueue(),
             unfinished_tasks=len(setup.tasks),
         )
 
-
-def _session(setup: Setup) -> InterferenceSession:
-    if setup.models.interference.decides_routes:
-        return LinksInUse(setup.models.interference)
-    if setup.reach is Reach.GLOBAL:
-        return PlainSession(setup.models.interference, is_global=True)
-    return setup.models.interference.open_session()
+    def served_MB(self) -> list[float]:
+        """Return the bytes that each link has carried, credited so far."""
+        served_MB = [0.0] * len(self.links.flows)
+        for transfer in self.transfers.values():
+            carried_MB = transfer.entry.size_MB - transfer.remaining_MB
+            for link in transfer.route:
+                served_MB[link] += carried_MB
+        return served_MB

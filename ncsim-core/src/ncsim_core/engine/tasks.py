@@ -3,12 +3,16 @@
 from ncsim_core.contracts.queue_model import WaitingTask
 from ncsim_core.contracts.scheduler import ActiveTransfer, NetworkSnapshot
 from ncsim_core.engine.boundary import checked_placement
-from ncsim_core.engine.events import TaskComplete, TaskReady, TaskStart
+from ncsim_core.engine.events import TASK_COMPLETE, TASK_READY, TASK_START
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import NodeState, State, TaskRun, TaskStatus
-from ncsim_core.engine.transfers import create_transfer
+from ncsim_core.engine.transfers import create_transfer, deliver_input
 from ncsim_core.errors import EngineError
 from ncsim_core.units import s_from_us, us_from_s
+
+READY, QUEUED, RUNNING, COMPLETED = (
+    TaskStatus.READY, TaskStatus.QUEUED, TaskStatus.RUNNING, TaskStatus.COMPLETED
+)  # fmt: skip  # a member is slow to look up
 
 
 def inject_dag(dag_number: int, state: State, setup: Setup) -> None:
@@ -27,7 +31,7 @@ def inject_dag(dag_number: int, state: State, setup: Setup) -> None:
         return
     for run in runs:
         if run.missing == 0:
-            state.queue.push(state.now_us, TaskReady.priority, TaskReady(run))
+            state.queue.push(state.now_us, TASK_READY, run.entry.number)
 
 
 def unroutable_dependencies(dag_number: int, state: State, setup: Setup) -> list[str]:
@@ -81,64 +85,62 @@ def _active_transfers(state: State, setup: Setup) -> list[ActiveTransfer]:
     return active
 
 
-def task_becomes_ready(run: TaskRun, state: State, setup: Setup) -> None:
+def task_becomes_ready(task: int, state: State, setup: Setup) -> None:
     """Reserve the task's node for it, or let it wait there."""
-    run.status, run.ready_us = TaskStatus.READY, state.now_us
+    run = state.tasks[task]
+    run.ready_us = state.now_us
     for observer in state.observers:
-        observer.task_ready(state.now_us, run.entry.number, run.node)
+        observer.task_ready(state.now_us, task, run.node)
     node = state.nodes[run.node]
     if node.task is None:
-        _reserve(node, run, state)
+        _reserve(node, task, state)
+        run.status = READY
     else:
-        run.status = TaskStatus.QUEUED
+        run.status = QUEUED
         node.queue.push(_waiting_task(run, setup))
 
 
-def start_task(run: TaskRun, state: State, setup: Setup) -> None:
+def start_task(task: int, state: State, setup: Setup) -> None:
     """Begin to run a task on the node that is reserved for it.
 
     Source: Section IV-B, a task takes cost over capacity.
     """
-    if state.nodes[run.node].task is not run:
-        raise EngineError(f"task {run.entry.number} starts on a node reserved for another")
-    run.status, run.started_us = TaskStatus.RUNNING, state.now_us
+    run = state.tasks[task]
+    if state.nodes[run.node].task != task:
+        raise EngineError(f"task {task} starts on a node reserved for another")
+    run.status, run.started_us = RUNNING, state.now_us
     for observer in state.observers:
-        observer.task_started(state.now_us, run.entry.number, run.node)
+        observer.task_started(state.now_us, task, run.node)
     capacity = setup.network.nodes[run.node].compute_capacity
     duration_us = us_from_s(run.entry.task.compute_cost / capacity)
-    state.queue.push(state.now_us + duration_us, TaskComplete.priority, TaskComplete(run))
+    state.queue.push(state.now_us + duration_us, TASK_COMPLETE, task)
 
 
-def complete_task(run: TaskRun, state: State, setup: Setup) -> None:
+def complete_task(task: int, state: State, setup: Setup) -> None:
     """End a task: hand its node to the head of the queue, then pass its results on."""
-    run.status, run.ended_us = TaskStatus.COMPLETED, state.now_us
+    run = state.tasks[task]
+    run.status, run.ended_us = COMPLETED, state.now_us
     state.unfinished_tasks -= 1
     state.last_task_end_us = state.now_us
     for observer in state.observers:
-        observer.task_ended(state.now_us, run.entry.number, run.node)
+        observer.task_ended(state.now_us, task, run.node)
     node = state.nodes[run.node]
     node.task = None
     if node.queue:
-        _reserve(node, state.tasks[node.queue.pop().ticket], state)
+        _reserve(node, node.queue.pop().ticket, state)
     for dependency in run.entry.outgoing:
-        target = state.tasks[setup.dependencies[dependency].target]
-        if target.node == run.node:
+        target = setup.dependencies[dependency].target
+        target_node = state.tasks[target].node
+        if target_node == run.node:
             deliver_input(target, state)
         else:
-            create_transfer(dependency, run.node, target.node, state, setup)
+            create_transfer(dependency, run.node, target_node, state, setup)
 
 
-def deliver_input(target: TaskRun, state: State) -> None:
-    """Count one input of a task as arrived; with the last one it becomes ready."""
-    target.missing -= 1
-    if target.missing == 0:
-        state.queue.push(state.now_us, TaskReady.priority, TaskReady(target))
-
-
-def _reserve(node: NodeState, run: TaskRun, state: State) -> None:
+def _reserve(node: NodeState, task: int, state: State) -> None:
     """Keep a node for a task before its start event, so that no other start can claim it."""
-    node.task = run
-    state.queue.push(state.now_us, TaskStart.priority, TaskStart(run))
+    node.task = task
+    state.queue.push(state.now_us, TASK_START, task)
 
 
 def _waiting_task(run: TaskRun, setup: Setup) -> WaitingTask:

@@ -1,6 +1,6 @@
 """Transfers: created when their producer ends, started after latency, completed."""
 
-from ncsim_core.engine.events import TransferComplete, TransferStart
+from ncsim_core.engine.events import TASK_READY, TRANSFER_COMPLETE, TRANSFER_START
 from ncsim_core.engine.refresh import occupy, refresh, release
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -17,30 +17,40 @@ def create_transfer(
     route = setup.routes.route(source, target)
     if route is None:
         raise EngineError(f"dependency {dependency} was found routable at injection, now it is not")
-    transfer = Transfer(entry, route, entry.size_MB, created_us=state.now_us)
-    state.transfers[dependency] = transfer
-    starts_us = state.now_us + us_from_s(setup.network.route_latency_s(route))
-    state.queue.push(starts_us, TransferStart.priority, TransferStart(transfer), entry.rank)
+    now_us = state.now_us
+    state.transfers[dependency] = Transfer(dependency, entry, route, entry.size_MB, now_us)
+    starts_us = now_us
+    if not setup.is_without_latency:
+        starts_us += us_from_s(setup.network.route_latency_s(route))
+    state.queue.push(starts_us, TRANSFER_START, dependency, entry.rank)
 
 
-def start_transfer(transfer: Transfer, state: State, setup: Setup) -> None:
+def start_transfer(number: int, state: State, setup: Setup) -> None:
     """Begin byte service; a transfer without bytes completes at once, whatever its rate."""
+    transfer = state.transfers[number]
     transfer.started_us = transfer.credited_us = state.now_us
     for observer in state.observers:
-        observer.transfer_started(
-            state.now_us, transfer.entry.number, transfer.route, transfer.entry.size_MB
-        )
+        observer.transfer_started(state.now_us, number, transfer.route, transfer.entry.size_MB)
     if transfer.remaining_MB > 0:
         refresh(transfer, occupy, state, setup)
     else:
-        event = TransferComplete(transfer)
-        state.queue.push(state.now_us, TransferComplete.priority, event, transfer.entry.rank)
+        state.queue.push(state.now_us, TRANSFER_COMPLETE, number, transfer.entry.rank)
 
 
-def complete_transfer(transfer: Transfer, state: State, setup: Setup) -> None:
-    """End byte service and free the route."""
+def complete_transfer(number: int, state: State, setup: Setup) -> None:
+    """End byte service, free the route and tell the waiting task."""
+    transfer = state.transfers[number]
     transfer.ended_us, transfer.completion = state.now_us, None
     for observer in state.observers:
-        observer.transfer_ended(state.now_us, transfer.entry.number)
+        observer.transfer_ended(state.now_us, number)
     if transfer.entry.size_MB > 0:
         refresh(transfer, release, state, setup)
+    deliver_input(transfer.entry.target, state)
+
+
+def deliver_input(task: int, state: State) -> None:
+    """Count one input of a task as arrived; with the last one it becomes ready."""
+    run = state.tasks[task]
+    run.missing -= 1
+    if run.missing == 0:
+        state.queue.push(state.now_us, TASK_READY, task)

@@ -7,7 +7,7 @@ at a fraction of the time.
 import json
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
@@ -19,16 +19,22 @@ from ncsim_core.engine.observer import Observer, RateCause, RateChange
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.models import ComponentIdentity
-from ncsim_core.network import LinkIndex, NodeIndex
+from ncsim_core.network import LinkIndex, NodeIndex, Route
 from ncsim_core.trace.fields import RECORDS, kinds_documented
 from ncsim_core.trace.files import TextSink
 from ncsim_core.trace.records import FORMAT, TIME_UNIT, VERSION, TraceHeader, TraceLevel
 from ncsim_core.trace.tables import injected_record, link_rows, node_rows
 from ncsim_core.units import Instant
 
-BUFFER_CHARACTERS: Final = 64 * 1024
+BUFFER_LINES: Final = 1000
+"""About 100 KB."""
+
+LONG_LINE_CHARACTERS: Final = 64 * 1024
+"""From here on a line, of an injection say, is written at once."""
+
 LIVE_FLUSH_s: Final = 0.25
 MAX_FLOATS_KEPT: Final = 10_000
+MAX_ROUTES_KEPT: Final = 10_000
 
 to_json: Final[Callable[[object], str]] = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False
@@ -42,6 +48,16 @@ class _FloatTexts(dict[float, str]):
         text = float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
         if len(self) < MAX_FLOATS_KEPT:
             self[number] = text
+        return text
+
+
+class _RouteTexts(dict[Route, str]):
+    """The text of each route as json writes it, kept because routes recur."""
+
+    def __missing__(self, route: Route) -> str:
+        text = f"[{','.join(map(str, route))}]"
+        if len(self) < MAX_ROUTES_KEPT:
+            self[route] = text
         return text
 
 
@@ -75,8 +91,9 @@ class TraceWriter(Observer):
         self._is_live = is_live
         self._flushed_at_s = -math.inf
         self._float_text = _FloatTexts().__getitem__
+        self._route_text = _RouteTexts().__getitem__
         self._lines: list[str] = []
-        self._characters = 0
+        self._append = self._put if is_live else self._lines.append
         self._counts = dict.fromkeys(RECORDS, 0)
         self._setup: Setup | None = None
 
@@ -107,27 +124,26 @@ class TraceWriter(Observer):
     @override
     def task_ready(self, at_us: Instant, task: int, node: NodeIndex) -> None:
         self._counts["ready"] += 1
-        self._put(f'{{"t":{at_us},"k":"ready","i":{task},"n":{node}}}\n')
+        self._append(f'{{"t":{at_us},"k":"ready","i":{task},"n":{node}}}\n')
 
     @override
     def task_started(self, at_us: Instant, task: int, node: NodeIndex) -> None:
         self._counts["start"] += 1
-        self._put(f'{{"t":{at_us},"k":"start","i":{task},"n":{node}}}\n')
+        self._append(f'{{"t":{at_us},"k":"start","i":{task},"n":{node}}}\n')
 
     @override
     def task_ended(self, at_us: Instant, task: int, node: NodeIndex) -> None:
         self._counts["end"] += 1
-        self._put(f'{{"t":{at_us},"k":"end","i":{task},"n":{node}}}\n')
+        self._append(f'{{"t":{at_us},"k":"end","i":{task},"n":{node}}}\n')
+        self._flush_if_full()
 
     @override
     def transfer_started(
         self, at_us: Instant, transfer: int, route: Sequence[LinkIndex], size_MB: float
     ) -> None:
         self._counts["xstart"] += 1
-        size = self._float_text(size_MB)
-        self._put(
-            f'{{"t":{at_us},"k":"xstart","x":{transfer},"route":[{_joined(route)}],"size":{size}}}\n'
-        )
+        links, size = self._route_text(tuple(route)), self._float_text(size_MB)
+        self._append(f'{{"t":{at_us},"k":"xstart","x":{transfer},"route":{links},"size":{size}}}\n')
 
     @override
     def rates_assigned(
@@ -135,21 +151,30 @@ class TraceWriter(Observer):
     ) -> None:
         if self._level != "full" or not changes:
             return
-        transfers, rates, bottlenecks, flows, competition = zip(*changes, strict=True)
-        contenders, hidden, hidden_factors = zip(*competition, strict=True)
+        text = self._float_text
+        transfers = rates = links = contenders = hidden = factors = flows = ""
+        for transfer, rate_MBps, bottleneck, flow_count, competition in changes:
+            contender_count, hidden_count, hidden_factor = competition
+            transfers += f",{transfer}"
+            rates += f",{text(rate_MBps)}"
+            links += f",{bottleneck}"
+            contenders += f",{contender_count}"
+            hidden += f",{hidden_count}"
+            factors += f",{text(hidden_factor)}"
+            flows += f",{flow_count}"
         by = "s" if cause.change == "start" else "e"
         self._counts["recalc"] += 1
-        self._put(
-            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{_joined(transfers)}],'
-            f'"r":[{",".join(map(self._float_text, rates))}],"l":[{_joined(bottlenecks)}],'
-            f'"nc":[{_joined(contenders)}],"nh":[{_joined(hidden)}],'
-            f'"fh":[{",".join(map(self._float_text, hidden_factors))}],"f":[{_joined(flows)}]}}\n'
+        self._append(
+            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{transfers[1:]}],'
+            f'"r":[{rates[1:]}],"l":[{links[1:]}],"nc":[{contenders[1:]}],"nh":[{hidden[1:]}],'
+            f'"fh":[{factors[1:]}],"f":[{flows[1:]}]}}\n'
         )
 
     @override
     def transfer_ended(self, at_us: Instant, transfer: int) -> None:
         self._counts["xend"] += 1
-        self._put(f'{{"t":{at_us},"k":"xend","x":{transfer}}}\n')
+        self._append(f'{{"t":{at_us},"k":"xend","x":{transfer}}}\n')
+        self._flush_if_full()
 
     def note(self, at_us: Instant, namespace: str, data: object) -> None:
         """Put something of a plug-in on record, under the plug-in's name."""
@@ -175,22 +200,18 @@ class TraceWriter(Observer):
 
     def _put(self, line: str) -> None:
         self._lines.append(line)
-        self._characters += len(line)
-        if self._characters >= BUFFER_CHARACTERS or (self._is_live and self._is_flush_due()):
+        is_due = self._is_live and time.monotonic() - self._flushed_at_s >= LIVE_FLUSH_s
+        if is_due or len(line) >= LONG_LINE_CHARACTERS:
             self._flush()
 
-    def _is_flush_due(self) -> bool:
-        return time.monotonic() - self._flushed_at_s >= LIVE_FLUSH_s
+    def _flush_if_full(self) -> None:
+        if len(self._lines) >= BUFFER_LINES:
+            self._flush()
 
     def _flush(self) -> None:
         self._sink.write("".join(self._lines))
         self._lines.clear()
-        self._characters = 0
         self._flushed_at_s = time.monotonic()
-
-
-def _joined(numbers: Iterable[int]) -> str:
-    return ",".join(map(str, numbers))
 
 
 def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dict[str, object]:
