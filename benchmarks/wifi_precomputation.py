@@ -19,17 +19,18 @@ from ncsim_core.network import Link, LinkId, Network, Node, NodeId, Position
 
 T = TypeVar("T")
 
-SPACING_m = 40.0
-SIZES = ((20, 20), (40, 50))  # 400 nodes, 1,520 links; 2,000 nodes, 7,820 links
+SPACING_m = 40  # of the paper's grids
+CROWDED_m = 10  # at which almost every link affects every other
+SIZES = ((20, 20, SPACING_m), (40, 50, SPACING_m), (40, 50, CROWDED_m))
 TRAFFIC = ((4, 4, 8, 2), (20, 20, 40, 5), (20, 20, 200, 13), (40, 50, 200, 13))
 REFRESHES = 1000
 
 
-def grid(rows: int, columns: int) -> Network:
+def grid(rows: int, columns: int, spacing_m: float = SPACING_m) -> Network:
     """Return a grid whose neighbours are linked both ways."""
     places = [(row, column) for row in range(rows) for column in range(columns)]
     nodes = tuple(
-        Node(NodeId(f"n{i}"), 100.0, Position(SPACING_m * column, SPACING_m * row))
+        Node(NodeId(f"n{i}"), 100.0, Position(spacing_m * column, spacing_m * row))
         for i, (row, column) in enumerate(places)
     )
     right = [(i, i + 1) for i, (_, column) in enumerate(places) if column + 1 < columns]
@@ -47,7 +48,7 @@ def timed(name: str, work: Callable[[], T]) -> T:
     return result
 
 
-def build(rows: int, columns: int) -> None:
+def build(rows: int, columns: int, spacing_m: int) -> None:
     """Print what it takes to prepare a network."""
     from ncsim_wifi.conflict import relations
     from ncsim_wifi.interference_models.csma_bianchi import csma_bianchi
@@ -55,8 +56,8 @@ def build(rows: int, columns: int) -> None:
     from ncsim_wifi.propagation import propagation
     from ncsim_wifi.radio import Radio
 
-    network = grid(rows, columns)
-    print(f"{len(network.nodes)} nodes, {len(network.links)} links")
+    network = grid(rows, columns, spacing_m)
+    print(f"{len(network.nodes)} nodes {spacing_m} m apart, {len(network.links)} links")
     context = BuildContext(network, cache=ModelCache())
     before_MB, start = _peak_MB(), time.process_time()
     timed("power matrix", lambda: propagation(context, Radio()))

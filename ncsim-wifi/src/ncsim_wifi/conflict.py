@@ -1,7 +1,8 @@
 """Who may not send together, and who disturbs whom unheard: the static relations of links.
 
 Relations are kept as neighbour lists, because in a large network most links are far apart, and
-built in blocks of rows, so that memory stays in proportion to the answer.
+built in blocks of rows into arrays of the right length, so that building needs little more
+memory than the answer.
 """
 
 from collections.abc import Collection, Iterator
@@ -72,7 +73,8 @@ class Relations:
     @cached_property
     def conflict_counts(self) -> IntArray:
         """Return the degree of each link in the conflict graph."""
-        return np.bincount(self.origins[self.is_conflict], minlength=self.link_count)
+        rows = (self.is_conflict[self.row(link)] for link in range(self.link_count))
+        return np.fromiter((np.count_nonzero(row) for row in rows), np.int64, self.link_count)
 
     @cached_property
     def origins(self) -> LinkArray:
@@ -121,30 +123,29 @@ def relations_of(network: Network, power_dBm: FloatArray, radio: Radio) -> Relat
         radio: Thresholds, and whether RTS/CTS is on.
     """
     on_air = np.flatnonzero([is_on_air(link) for link in network.links])
-    ends = LinkEnds(np.array(network.sources)[on_air], np.array(network.targets)[on_air])
-    hears = hearing(power_dBm, radio)
     power_mW = mW_from_dBm(power_dBm)
     power_mW[power_dBm < radio.interference_cutoff_dBm] = 0.0
-    names = on_air.astype(np.int32)
-    row_lengths = np.zeros(len(network.links) + 1, np.int64)
-    columns, conflicts, powers_mW = [names[:0]], [np.zeros(0, np.bool_)], [np.zeros(0)]
-    for block in _blocks(len(on_air)):
-        in_conflict = conflict_block(block, ends, hears, rts_cts=radio.rts_cts)
-        at_receivers_mW = power_mW[ends.sources[block]].take(ends.targets, axis=1)
-        is_related = at_receivers_mW > 0.0
-        is_related |= in_conflict
-        own = np.arange(block.start, block.stop)
-        is_related[own - block.start, own] = False  # no link is its own neighbour
-        row_lengths[on_air[block] + 1] = np.count_nonzero(is_related, axis=1)
-        columns.append(np.broadcast_to(names, is_related.shape)[is_related])
-        conflicts.append(in_conflict[is_related])
-        powers_mW.append(at_receivers_mW[is_related])
-    return Relations(
-        np.cumsum(row_lengths),
-        np.concatenate(columns),
-        np.concatenate(conflicts),
-        np.concatenate(powers_mW),
+    air = Air(
+        LinkEnds(np.array(network.sources)[on_air], np.array(network.targets)[on_air]),
+        hearing(power_dBm, radio),
+        power_mW,
+        radio.rts_cts,
     )
+    row_lengths = np.zeros(len(network.links) + 1, np.int64)
+    for block in _blocks(len(on_air)):
+        row_lengths[on_air[block] + 1] = np.count_nonzero(air.related(block).is_related, axis=1)
+    starts = np.cumsum(row_lengths)
+    count = int(starts[-1])
+    links, names = np.empty(count, np.int32), on_air.astype(np.int32)
+    is_conflict, powers_mW = np.empty(count, np.bool_), np.empty(count)
+    for block in _blocks(len(on_air)):
+        found = air.related(block)
+        cells = np.flatnonzero(found.is_related)
+        entries = slice(starts[on_air[block.start]], starts[on_air[block.stop - 1] + 1])
+        links[entries] = names[cells % len(on_air)]
+        is_conflict[entries] = found.is_conflict.ravel()[cells]
+        powers_mW[entries] = found.power_mW.ravel()[cells]
+    return Relations(starts, links, is_conflict, powers_mW)
 
 
 @dataclass(frozen=True)
@@ -153,6 +154,45 @@ class LinkEnds:
 
     sources: IntArray
     targets: IntArray
+
+
+@dataclass(frozen=True)
+class RelatedBlock:
+    """How the links of a block (rows) affect all links (columns)."""
+
+    is_related: BoolArray
+    is_conflict: BoolArray
+    power_mW: FloatArray
+
+
+@dataclass(frozen=True)
+class Air:
+    """What all wireless links of a network have in common.
+
+    Asked twice for each block, once to count and once to keep: computing is cheaper than
+    holding what the answer will hold.
+
+    Args:
+        ends: Their nodes.
+        hears: Which nodes sense each other.
+        power_mW: Received power by (sending node, receiving node), 0 below the cutoff.
+        rts_cts: Whether RTS/CTS is on.
+    """
+
+    ends: LinkEnds
+    hears: BoolArray
+    power_mW: FloatArray
+    rts_cts: bool
+
+    def related(self, block: slice) -> RelatedBlock:
+        """Return how the links of a block affect all links."""
+        in_conflict = conflict_block(block, self.ends, self.hears, rts_cts=self.rts_cts)
+        at_receivers_mW = self.power_mW[self.ends.sources[block]].take(self.ends.targets, axis=1)
+        is_related = at_receivers_mW > 0.0
+        is_related |= in_conflict
+        own = np.arange(block.start, block.stop)
+        is_related[own - block.start, own] = False  # no link is its own neighbour
+        return RelatedBlock(is_related, in_conflict, at_receivers_mW)
 
 
 def hearing(power_dBm: FloatArray, radio: Radio) -> BoolArray:

@@ -16,6 +16,7 @@ from ncsim_wifi.levels import UNIT_BITS, Levels
 from ncsim_wifi.quantities import IntArray
 
 LOAD_BITS = 62  # of a signed 64-bit number, one spare
+ENTRIES_PER_BLOCK = 1 << 20  # so that no second array of all entries is needed
 
 
 @dataclass(frozen=True)
@@ -77,8 +78,11 @@ class Influence:
 
 def influence_of(related: Relations, levels: Levels) -> Influence:
     """Return the influence of every link on every other."""
-    increments = levels.units(related.links, related.power_mW)
     counts = np.bincount(related.links[~related.is_conflict], minlength=1)
     count_shift = UNIT_BITS + int(counts.max()).bit_length()
-    increments[related.is_conflict] = 1 << min(count_shift, LOAD_BITS)
+    increments = np.full(len(related.links), 1 << min(count_shift, LOAD_BITS), np.int64)
+    for start in range(0, len(increments), ENTRIES_PER_BLOCK):
+        block = slice(start, start + ENTRIES_PER_BLOCK)
+        hidden = np.flatnonzero(~related.is_conflict[block]) + start
+        increments[hidden] = levels.units(related.links[hidden], related.power_mW[hidden])
     return Influence(related, increments, count_shift)
