@@ -52,6 +52,7 @@ class _Reading:
         self._folder = folder
         self._registry = registry
         self._files: dict[str, Mapping[str, Any]] = {}
+        self._parts: dict[str, Mapping[str, Any]] = {}
 
     def plan(self, default_name: str) -> SweepPlan:
         self._refuse(frame_problems(self._document, self._registry))
@@ -86,19 +87,23 @@ class _Reading:
         """Take in every file that is named, and yield those that cannot be read."""
         base = rows["base"]
         if "scenario" in base:
-            yield from self._taken_in(base["scenario"], ("sweep", "base", "scenario"))
+            place: Path = ("sweep", "base", "scenario")
+            yield from self._taken_in(base["scenario"], place, self._files)
         for part in ("network", "dags"):
             given = base.get(part)
             if isinstance(given, dict) and "file" in given:
-                yield from self._taken_in(given["file"], ("sweep", "base", part, "file"))
+                place = ("sweep", "base", part, "file")
+                yield from self._taken_in(given["file"], place, self._parts)
         for axis in axes:
             for index, path in enumerate(axis.paths):
                 if path in ("network.file", "dags.file"):
                     for number, level in enumerate(axis.levels):
-                        place = (*axis.places[index], number)
-                        yield from self._taken_in(level[index], place)
+                        at = (*axis.places[index], number)
+                        yield from self._taken_in(level[index], at, self._parts)
 
-    def _taken_in(self, name: str, place: Path) -> Iterator[Problem]:
+    def _taken_in(
+        self, name: str, place: Path, files: dict[str, Mapping[str, Any]]
+    ) -> Iterator[Problem]:
         path = self._folder / str(name)
         try:
             load_scenario(path, registry=self._registry)
@@ -109,7 +114,7 @@ class _Reading:
             yield Problem(place, str(error), shown(name))
         else:
             document, _ = read_document(read_source(path))
-            self._files[name] = translated(document, self._registry).document["scenario"]
+            files[name] = translated(document, self._registry).document["scenario"]
 
     def _base(self, rows: Mapping[str, Any], default_name: str) -> Base:
         start = self._files[rows["scenario"]] if "scenario" in rows else {}
@@ -118,9 +123,7 @@ class _Reading:
             network=rows.get("network", start.get("network")),
             dags=rows.get("dags", start.get("dags")),
             config={**start.get("config", {}), **rows.get("config", {})},
-            files={
-                name: each for name, each in self._files.items() if name != rows.get("scenario")
-            },
+            files=self._parts,
         )
 
 

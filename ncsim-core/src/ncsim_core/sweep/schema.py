@@ -98,7 +98,11 @@ def _part(
 ) -> Schema:
     branches = [
         {
-            "if": {"properties": {"type": {"const": each.name}}, "required": ["type"]},
+            "if": {
+                "type": "object",
+                "properties": {"type": {"const": each.name}},
+                "required": ["type"],
+            },
             "then": generator_schema(each, common),
         }
         for each in generators.values()
