@@ -79,6 +79,14 @@ def test_files_are_varied_like_any_parameter(folder):
     assert [row["makespan_s"] for row in rows] == [5.0, 11.0]
 
 
+def test_parts_are_varied_as_a_whole(folder):
+    base = {"network": {"file": "inputs/small.yaml"}, "config": {"scheduler": "round_robin"}}
+    vary = {"dags": [{"file": "inputs/large.yaml"}, {"type": "chain", "tasks": 1}]}
+    rows = done(folder, base=base, vary=vary)
+
+    assert [row["makespan_s"] for row in rows] == [11.0, 5.0]
+
+
 def test_rows_stand_in_the_sweep_itself(folder):
     parts = scenario_rows(100, 4)["scenario"]
     rows = done(folder, base={key: parts[key] for key in ("network", "dags", "config")})

@@ -94,12 +94,8 @@ class _Reading:
             if isinstance(given, dict) and "file" in given:
                 place = ("sweep", "base", part, "file")
                 yield from self._taken_in(given["file"], place, self._parts)
-        for axis in axes:
-            for index, path in enumerate(axis.paths):
-                if path in ("network.file", "dags.file"):
-                    for number, level in enumerate(axis.levels):
-                        at = (*axis.places[index], number)
-                        yield from self._taken_in(level[index], at, self._parts)
+        for name, at in _files_among(axes):
+            yield from self._taken_in(name, at, self._parts)
 
     def _taken_in(
         self, name: str, place: Path, files: dict[str, Mapping[str, Any]]
@@ -148,6 +144,18 @@ def _axes(rows: Mapping[str, Any]) -> tuple[list[Axis], list[Problem]]:
         problems += _repetitions(rows_together, places[0])
         axes.append(Axis(tuple(group), rows_together, tuple(places)))
     return axes, problems
+
+
+def _files_among(axes: Sequence[Axis]) -> Iterator[tuple[str, Path]]:
+    """Yield the files that are varied, with their places: ``dags.file``, or ``dags`` as a whole."""
+    for axis in axes:
+        for index, path in enumerate(axis.paths):
+            for number, level in enumerate(axis.levels):
+                value, place = level[index], (*axis.places[index], number)
+                if path in ("network.file", "dags.file"):
+                    yield str(value), place
+                elif path in ("network", "dags") and isinstance(value, dict) and "file" in value:
+                    yield str(value["file"]), (*place, "file")
 
 
 def _repetitions(levels: Sequence[Any], place: Path) -> Iterator[Problem]:
