@@ -84,7 +84,7 @@ def test_differences_are_taken_seed_by_seed():
     record = table.to_dicts()[0]
 
     assert record["difference"] == "csma_bianchi - none"
-    assert record["mean_makespan_s"] == 2.0
+    assert record["mean_difference"] == 2.0
     assert record["pairs"] == 2
 
 
@@ -127,7 +127,7 @@ def test_measured_numbers_of_a_column_have_equally_many_digits_and_parameters_no
     assert table.to_markdown(digits=2).splitlines()[2:] == [
         "| 0.5 | 10.18 |",
         "| 2 | 9.48 |",
-        "| 1 | 1e-06 |",
+        "| 1 | 0.00 |",
     ]
 
 

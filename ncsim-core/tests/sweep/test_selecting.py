@@ -97,6 +97,11 @@ def test_two_columns_are_compared_pair_by_pair(study):
     ratios = {row["what"]: row for row in found["totals"]}["ratio"]
     assert ratios["mean"] == mean_interval([each["ratio"] for each in found["pairs"]]).mean
     assert ratios["pairs"] == 16
+    case = found["cases"][0]
+    own = [each for each in found["pairs"] if all(each[c] == case[c] for c in list(case)[:2])]
+    assert case["pairs"] == len(own) == 4
+    assert case["difference_s"] == mean_interval([each["difference_s"] for each in own]).mean
+    assert case["ratio_high"] == mean_interval([each["ratio"] for each in own]).high
 
 
 def test_columns_that_were_not_named_pair_the_runs(study):

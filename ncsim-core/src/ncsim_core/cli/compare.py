@@ -17,13 +17,17 @@ def compare(
     second: Annotated[str, typer.Argument(metavar="SECOND", help="What to compare it with.")],
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="Every pair of runs, not only means over seeds.")
+    ] = False,
     digits: Annotated[int, typer.Option(min=0, max=12, help="After the point, in tables.")] = 3,
 ) -> None:
     """Compare two runs, or two columns of a study: what changed, and why?
 
     A run is a trace, the output folder of a run, or STUDY@COLUMN=VALUE,... that names one run of
     a study; two runs are compared by configuration, makespan, and every task and transfer that
-    changed. STUDY@COLUMN=VALUE that names many is compared pair by pair: makespans, ratio, regret.
+    changed. STUDY@COLUMN=VALUE that names many is compared pair by pair, and over seeds:
+    makespans, difference, ratio, and the regret of taking either one.
     Changes are second minus first; a positive time is later or longer in the second run.
 
     Example: ncsim compare study@interference=none study@interference=csma_bianchi
@@ -34,7 +38,7 @@ def compare(
     if columns[0] is not None and columns[1] is not None:
         tables = _tables_of(columns[0], columns[1])
         if tables is not None:
-            _print_tables(tables, digits, as_json=as_json)
+            _print_tables(tables, digits, every=every, as_json=as_json)
             return
     _compare_runs(first, second, as_json=as_json)
 
@@ -53,9 +57,9 @@ def _compare_runs(first: str, second: str, *, as_json: bool) -> None:
         typer.echo(line)
 
 
-def _tables_of(first: "Selection", second: "Selection") -> "list[Table] | None":
+def _tables_of(first: "Selection", second: "Selection") -> "dict[str, Table] | None":
     """Return the comparison of two columns; ``None`` if each is one run."""
-    from ncsim_core.sweep.comparing import pairs_table, pairs_totals
+    from ncsim_core.sweep.comparing import pairs_cases, pairs_table, pairs_totals
     from ncsim_core.sweep.selecting import matching, resolved
     from ncsim_core.sweep.store import Store
 
@@ -68,19 +72,19 @@ def _tables_of(first: "Selection", second: "Selection") -> "list[Table] | None":
     if len(sides[0]) == len(sides[1]) == 1:
         return None
     table = pairs_table(*sides, compared)
-    return [table, pairs_totals(table)]
+    return {"pairs": table, "cases": pairs_cases(table), "totals": pairs_totals(table)}
 
 
-def _print_tables(tables: "list[Table]", digits: int, *, as_json: bool) -> None:
+def _print_tables(tables: "dict[str, Table]", digits: int, *, every: bool, as_json: bool) -> None:
     from ncsim_core.cli.report import terminal_text
     from ncsim_core.trace.files import json_text
 
     if as_json:
-        names = ("pairs", "totals")
-        found = {name: table.to_dicts() for name, table in zip(names, tables, strict=True)}
+        found = {name: table.to_dicts() for name, table in tables.items()}
         typer.echo(json_text(found), nl=False)
         return
-    typer.echo("\n\n".join(terminal_text(table, digits) for table in tables))
+    wanted = (tables["pairs" if every else "cases"], tables["totals"])
+    typer.echo("\n\n".join(terminal_text(table, digits) for table in wanted))
 
 
 def comparison_lines(comparison: "Comparison") -> "Iterator[str]":

@@ -13,11 +13,16 @@ from ncsim_core.metrics.statistics import (
     winner_set,
 )
 from ncsim_core.sweep.plan import canonical
-from ncsim_core.sweep.selecting import Selected
+from ncsim_core.sweep.report import grouped
+from ncsim_core.sweep.selecting import SEED, Selected
 from ncsim_core.sweep.table import Table
 from ncsim_core.units import s_from_us
 
 NAMES: Final = ("first", "second")
+MEASURED: Final = (
+    *("first_s", "second_s", "difference_s", "ratio"),
+    *("regret_first", "regret_second"),
+)
 
 
 class Pair(NamedTuple):
@@ -54,16 +59,41 @@ def pairs_table(
     ]
     if not pairs:
         raise ScenarioError(f"no two runs agree in {', '.join(columns)}; nothing can be compared")
-    names = ("first_s", "second_s", "difference_s", "ratio", "regret_first", "regret_second")
     rows = tuple(_row(pair) for pair in pairs)
-    return Table((*columns, *names), rows, "makespan, second against first", heads=len(columns))
+    return Table((*columns, *MEASURED), rows, "makespan, second against first", heads=len(columns))
+
+
+def pairs_cases(table: Table, confidence: float = 0.95) -> Table:
+    """Return a ``pairs_table`` over its seeds: means, intervals of differences and ratios."""
+    columns = [column for column in table.columns[: table.heads] if column != SEED]
+    rows = []
+    for case in grouped(table.to_dicts(), columns):
+        values = {name: [pair[name] for pair in case] for name in MEASURED}
+        means = {name: mean_interval(each, confidence) for name, each in values.items()}
+        difference, ratio = means["difference_s"], means["ratio"]
+        rows.append(
+            (
+                *(case[0][column] for column in columns),
+                *(means["first_s"].mean, means["second_s"].mean),
+                *(difference.mean, difference.low, difference.high),
+                *(ratio.mean, ratio.low, ratio.high),
+                *(means["regret_first"].mean, means["regret_second"].mean),
+                *(difference.count, difference.left_out),
+            )
+        )
+    names = (
+        *("first_s", "second_s", "difference_s", "low", "high", "ratio", "ratio_low"),
+        *("ratio_high", "regret_first", "regret_second", "pairs", "left_out"),
+    )
+    title = f"{table.title}; means over seeds, {confidence:.0%} intervals"
+    return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 
 def pairs_totals(table: Table, confidence: float = 0.95) -> Table:
     """Return means with Student-t intervals over the rows of a ``pairs_table``."""
     columns = table.to_columns()
     rows = []
-    for name in ("first_s", "second_s", "difference_s", "ratio", "regret_first", "regret_second"):
+    for name in MEASURED:
         mean, middle = mean_interval(columns[name], confidence), median(columns[name])
         cells = (mean.mean, mean.low, mean.high, middle.median, mean.count, mean.left_out)
         rows.append((name, *cells))

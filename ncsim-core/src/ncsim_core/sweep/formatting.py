@@ -39,14 +39,12 @@ def shown_value(value: object) -> str:
 def measured(value: object, digits: int = DIGITS) -> str:
     """Return a measured value; all of a column have the same number of digits.
 
-    >>> measured(12.5), measured(0.00001), measured(7)
-    ('12.500', '1e-05', '7')
+    >>> measured(12.5), measured(-0.00001), measured(7)
+    ('12.500', '0.000', '7')
     """
     if not isinstance(value, float):
         return shown_value(value)
     text = f"{value:.{digits}f}"
-    if value != 0 and float(text) == 0:
-        return f"{value:.2g}"
     return text.removeprefix("-") if float(text) == 0 else text
 
 
@@ -75,11 +73,19 @@ def _is_number(value: object) -> bool:
 
 
 def escaped_for_latex(text: str) -> str:
-    r"""Return text that LaTeX sets as it is.
+    r"""Return text that LaTeX sets as it is: numbers with a minus, nothing as a dash.
 
-    >>> escaped_for_latex("a_b 50%")
-    'a\\_b 50\\%'
+    >>> escaped_for_latex("a_b 50%"), escaped_for_latex("-1.5")
+    ('a\\_b 50\\%', '$-1.5$')
     """
+    if text == "-":
+        return "--"
+    if text.startswith("-") and _NUMBER.fullmatch(text):
+        return f"${_escaped(text)}$"
+    return _escaped(text)
+
+
+def _escaped(text: str) -> str:
     return "".join(_LATEX.get(each, each) for each in text)
 
 

@@ -163,8 +163,8 @@ def paired(runs: Table, axis: str, measure: str = "makespan_s", confidence: floa
             cells = (mean.mean, mean.low, mean.high, mean.count, mean.left_out)
             if seeds:  # a condition may leave one of the two out
                 rows.append((*head, f"{other} - {first}", *cells))
-    names = ("difference", f"mean_{measure}", "low", "high", "pairs", "left_out")
-    title = f"{runs.title}: {axis}, paired by seed, {confidence:.0%} intervals"
+    names = ("difference", "mean_difference", "low", "high", "pairs", "left_out")
+    title = f"{runs.title}: {measure} along {axis}, paired by seed, {confidence:.0%} intervals"
     return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 

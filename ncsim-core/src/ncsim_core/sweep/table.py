@@ -86,7 +86,7 @@ class Table:
         """Return a LaTeX table in the style of booktabs, its title as a comment above it."""
         marks = "".join("r" if is_right else "l" for is_right in self.numeric)
         lines = [
-            " & ".join("--" if text == "-" else escaped_for_latex(text) for text in row) + r" \\"
+            " & ".join(map(escaped_for_latex, row)) + r" \\"
             for row in (self.columns, *cells(self.rows, self.heads, digits))
         ]
         return "\n".join(
