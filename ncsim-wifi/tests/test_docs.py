@@ -32,3 +32,15 @@ def test_every_key_of_rf_is_in_the_table_with_its_default_and_range():
         )
         if "minimum" in schema:
             assert bounds == f"{schema['minimum']:g} to {schema['maximum']:g}"
+
+
+def test_every_rule_that_the_code_cites_is_on_the_page_of_rules():
+    root = Path(__file__).parents[2]
+    rules = re.findall(r"^(\d+)\. ", (root / "docs/spec.md").read_text("utf-8"), re.MULTILINE)
+    sources = [path.read_text("utf-8") for path in root.glob("ncsim-*/src/**/*.py")]
+
+    cited = {number for text in sources for number in re.findall(r"SPEC (\d+)", text)}
+
+    assert rules == [str(number) for number in range(1, 24)]
+    assert cited <= set(rules)
+    assert len(cited) > 10

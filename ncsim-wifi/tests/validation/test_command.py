@@ -19,6 +19,12 @@ def test_a_stage_prints_its_rows_and_counts_them():
     assert "28 comparisons: 28 pass" in result.output
 
 
+def test_a_stage_that_is_named_twice_runs_once():
+    result = RUNNER.invoke(app, ["--stage", "literature", "--stage", "literature"])
+
+    assert result.output.count("28 comparisons") == 1
+
+
 def test_json_has_a_row_per_comparison():
     result = RUNNER.invoke(app, ["--stage", "literature", "--json"])
 

@@ -46,7 +46,7 @@ def pair_draws(node_ids: Sequence[str], seed: int) -> FloatArray:
 
 
 def _node_key(seed: int, node_id: str) -> int:
-    digest = hashlib.sha256(f"{seed}\x00{node_id}".encode()).digest()
+    digest = hashlib.sha256(f"{seed}\x00{node_id}".encode("utf-8", "surrogatepass")).digest()
     return int.from_bytes(digest[:8], "big")
 
 

@@ -48,7 +48,7 @@ def validate_model(
 
     Example: ncsim validate-model --stage literature --plots figures/
     """
-    chosen = stage or list(StageName)
+    chosen = list(dict.fromkeys(stage or StageName))
     rows = [row for each in chosen for row in rows_of(each)]
     if as_json:
         typer.echo(json.dumps([row.to_dict() for row in rows], indent=2))
