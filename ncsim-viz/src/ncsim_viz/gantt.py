@@ -112,3 +112,38 @@ def _chart(title: str, nodes: list[str], bars: tuple[Bar, ...], end_s: float) ->
     lanes = tuple(f"{nodes[lane // 2]}{' sends' if lane % 2 else ''}" for lane in used)
     moved = tuple(bar._replace(lane=number[bar.lane]) for bar in bars)
     return Chart(title, lanes, moved, end_s)
+
+
+class Row(NamedTuple):
+    """Where a bar stands within its lane.
+
+    Args:
+        bar: The bar.
+        bottom: Lower edge, from 0 to 1 of the lane, counted downwards.
+        height: As a part of the lane.
+    """
+
+    bar: Bar
+    bottom: float
+    height: float
+
+
+def rows_of(chart: Chart) -> list[Row]:
+    """Return the bars beside each other where they overlap, so that all are seen."""
+    rows: list[Row] = []
+    for lane in range(len(chart.lanes)):
+        bars = sorted(
+            (bar for bar in chart.bars if bar.lane == lane), key=lambda each: each.start_s
+        )
+        ends_s: list[float] = []
+        places: list[int] = []
+        for bar in bars:
+            free = next((at for at, end_s in enumerate(ends_s) if end_s <= bar.start_s), None)
+            if free is None:
+                free = len(ends_s)
+                ends_s.append(0.0)
+            ends_s[free] = bar.end_s
+            places.append(free)
+        height = 1 / max(1, len(ends_s))
+        rows += [Row(bar, at * height, height) for bar, at in zip(bars, places, strict=True)]
+    return rows

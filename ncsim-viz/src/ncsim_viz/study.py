@@ -1,18 +1,20 @@
 """A study ready for JSON; every number comes from ``ncsim_core.sweep.report``."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Final
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.metrics.statistics import slowdown
 from ncsim_core.sweep.formatting import shown_value
 from ncsim_core.sweep.report import (
     SOLO,
     column_of,
     full_mode,
+    grouped,
     means,
     parameters,
     policies,
@@ -25,7 +27,6 @@ from ncsim_core.sweep.table import Table, table_of
 MAX_ROWS: Final = 20_000
 """Runs that are listed one by one; means are always over all."""
 MEASURE: Final = "makespan_s"
-MATRIX_MEASURES: Final = ("regret", "slowdown")
 
 
 def is_study(path: Path) -> bool:
@@ -56,6 +57,7 @@ def study_document(
         every = table_of(store)
     runs = _selected(every, where or {})
     matrix, roles, note = _matrix(runs, policy, mode)
+    slowdowns = _slowdowns(runs, mode)
     left_out = max(0, len(runs.rows) - MAX_ROWS)
     notes = [note, f"{left_out} runs are not listed one by one." if left_out else ""]
     return {
@@ -68,7 +70,11 @@ def study_document(
         "runs": _table(replace(runs, rows=runs.rows[:MAX_ROWS])),
         "winners": None if matrix is None else _table(matrix),
         "totals": None if matrix is None else _table(policy_totals(matrix)),
-        "groups": list(_groups(runs, matrix)),
+        "groups": [
+            *_means(runs, MEASURE),
+            *([] if slowdowns is None else _means(slowdowns, "slowdown")),
+            *([] if matrix is None else _means(_regrets(matrix), "regret")),
+        ],
     }
 
 
@@ -90,24 +96,40 @@ def _matrix(runs: Table, policy: str, mode: str) -> tuple[Table | None, dict[str
     return matrix, {"policy": policy, "mode": mode, "solo": SOLO, "full": full}, ""
 
 
-def _groups(runs: Table, matrix: Table | None) -> Iterator[dict[str, object]]:
-    """Yield the means over what agrees in one factor or two."""
-    names = parameters(runs)
-    yield from _means(runs, names, MEASURE)
-    if matrix is not None:
-        others = [name for name in names if name in matrix.columns]
-        finite = replace(matrix, rows=tuple(tuple(map(_finite, row)) for row in matrix.rows))
-        for measure in MATRIX_MEASURES:
-            yield from _means(finite, others, measure)
+def _slowdowns(runs: Table, mode: str) -> Table | None:
+    """Return Full over Solo of each combination and seed; ``None`` if these are not two modes."""
+    try:
+        mode = column_of(runs, mode)
+        full = full_mode(runs, mode, SOLO)
+    except ScenarioError:
+        return None
+    columns = [*(name for name in parameters(runs) if name != mode), "seed"]
+    rows = []
+    for group in grouped(runs.to_dicts(), columns):
+        found = {shown_value(record[mode]): record[MEASURE] for record in group}
+        ratio = slowdown(found.get(full), found.get(SOLO))
+        rows.append((*(group[0][name] for name in columns), _finite(ratio)))
+    return Table((*columns, "slowdown"), tuple(rows), runs.title, heads=len(columns))
 
 
-def _means(table: Table, names: Sequence[str], measure: str) -> Iterator[dict[str, object]]:
+def _regrets(matrix: Table) -> Table:
+    """Return the regret of each case of a table of policies."""
+    columns = matrix.columns[: matrix.heads]
+    rows = tuple(
+        (*row[: matrix.heads], _finite(row[matrix.columns.index("regret")])) for row in matrix.rows
+    )
+    return Table((*columns, "regret"), rows, matrix.title, heads=matrix.heads)
+
+
+def _means(table: Table, measure: str) -> Iterator[dict[str, object]]:
+    """Yield means over all rows that agree in one factor, and in each pair of factors."""
+    names = [name for name in table.columns[: table.heads] if name != "seed"]
     pairs = combinations(names, 2) if len(table.rows) <= MAX_ROWS else ()
     for by in [*((name,) for name in names), *pairs]:
         found = means(table, by, measure)
         columns = (*by, "mean", "low", "high", "median", "runs", "left_out")
-        entry = {"by": list(by), "measure": measure}
         title = f"{table.title}: {measure} by {' and '.join(by)}"
+        entry = {"by": list(by), "measure": measure}
         yield entry | {"table": _table(replace(found, columns=columns, title=title))}
 
 

@@ -11,19 +11,6 @@ from ncsim_core.trace.writer import TraceWriter
 from ncsim_viz.server.child import Limits
 from ncsim_viz.server.serving import ViewerServer
 
-SCENARIO = """
-scenario:
-  name: small
-  network:
-    nodes: [{id: a, compute_capacity: 1}, {id: b, compute_capacity: 2}]
-    links: [{id: ab, from: a, to: b, bandwidth: 2}]
-  dags:
-    - id: d
-      tasks: [{id: T0, compute_cost: 1, pinned_to: a}, {id: T1, compute_cost: 1, pinned_to: b}]
-      edges: [{from: T0, to: T1, data_size: 4}]
-  config: {scheduler: manual, link_model: static}
-"""
-
 
 class Client:
     """Asks a server as the page does."""
@@ -53,17 +40,11 @@ class Client:
 
 
 @pytest.fixture
-def scenario_text():
-    """Return a small scenario."""
-    return SCENARIO
-
-
-@pytest.fixture
-def run_folder(tmp_path):
+def run_folder(tmp_path, scenario_text):
     """Return a served folder with one run in it."""
     folder = tmp_path / "served" / "small"
     folder.mkdir(parents=True)
-    (folder / "scenario.yaml").write_text(SCENARIO)
+    (folder / "scenario.yaml").write_text(scenario_text)
     scenario = load_scenario(folder / "scenario.yaml")
     prepare(scenario, observers=[TraceWriter(folder / "trace.jsonl")]).run()
     return folder

@@ -1,4 +1,4 @@
-"""``ncsim plot``: figures of a study."""
+"""``ncsim plot``: figures of a study or of a run."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -18,9 +18,16 @@ class FigureKind(StrEnum):
 
 
 def plot(  # noqa: PLR0913 - one parameter per option
-    study: Annotated[Path, typer.Argument(metavar="STUDY", help="Folder of a sweep.")],
+    study: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY|RUN", help="Folder of a sweep; or a run, with --kind."),
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture: .svg, .pdf or .png.")],
     *,
+    kind: Annotated[
+        str | None,
+        typer.Option(help="Figure of a run: gantt, rates, topology, dag, or one of a package."),
+    ] = None,
     figure: Annotated[
         FigureKind | None,
         typer.Option(
@@ -37,22 +44,30 @@ def plot(  # noqa: PLR0913 - one parameter per option
         str, typer.Option(help="Column that tells Solo (none) from Full.")
     ] = "interference",
 ) -> None:
-    """Draw means or slowdowns with intervals along a column, or regret by case.
+    """Draw means or slowdowns of a study along a column, or regret by case; or draw a run.
 
     Example: ncsim plot study/ --figure slowdown --along payload_MB -o slowdown.svg
+
+    Example: ncsim plot out/ --kind gantt -o gantt.pdf
     """
     from ncsim_core.sweep.figures import draw_means, draw_regret, draw_slowdown
-    from ncsim_core.sweep.store import Store
+    from ncsim_core.sweep.store import STORE_NAME, Store
     from ncsim_core.sweep.table import table_of
 
+    if kind is not None or (study.exists() and not (study / STORE_NAME).exists()):
+        from ncsim_core.cli.run_figures import draw_run
+
+        draw_run(str(study), kind, output)
+        typer.echo(f"wrote {output}", err=True)
+        return
     with Store(study, must_exist=True) as store:
         runs = table_of(store)
-    kind = figure or (FigureKind.REGRET if along is None else FigureKind.MEANS)
-    if kind is FigureKind.REGRET:
+    chosen = figure or (FigureKind.REGRET if along is None else FigureKind.MEANS)
+    if chosen is FigureKind.REGRET:
         draw_regret(runs, policy, mode, output)
     elif along is None:
-        raise ScenarioError(f"--figure {kind} needs --along COLUMN, the column of its x axis")
-    elif kind is FigureKind.MEANS:
+        raise ScenarioError(f"--figure {chosen} needs --along COLUMN, the column of its x axis")
+    elif chosen is FigureKind.MEANS:
         draw_means(runs, along, measure, output)
     else:
         draw_slowdown(runs, along, mode, output)

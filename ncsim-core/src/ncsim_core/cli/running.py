@@ -89,12 +89,7 @@ def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> R
 
     scenario = request.scenario
     started_s = time.perf_counter()
-    header = TraceHeader(
-        scenario=scenario.name,
-        scenario_sha256=scenario.sha256,
-        seed=scenario.config.seed,
-        sections=scenario.config.sections,
-    )
+    header = TraceHeader.of(scenario)
     # Metrics are those that the trace gives: without rates in it, none are counted either.
     counted: TraceLevel = "full" if request.trace_level == "full" else "coarse"
     recorder = RunRecorder(header, counted, keeps_steps=False)

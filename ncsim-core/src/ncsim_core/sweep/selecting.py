@@ -123,10 +123,7 @@ def _carried_out(plan: SweepPlan, selected: Selected) -> RunTrace:
     values = dict(selected.values)
     seed = values.pop(SEED)
     scenario = Resolver(plan).scenario(Run(0, tuple(values.values()), seed))
-    header = TraceHeader(
-        scenario.name, scenario.sha256, scenario.config.seed, scenario.config.sections
-    )
-    recorder = RunRecorder(header)
+    recorder = RunRecorder(TraceHeader.of(scenario))
     assembly = assemble(scenario)
     max_time_s = plan.limits.max_time_s
     limits = Limits(plan.limits.max_events, None if max_time_s is None else us_from_s(max_time_s))

@@ -5,10 +5,13 @@ How they look in a file is in ``fields``.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple, Self, TypeAlias
 
 from ncsim_core.errors import ScenarioError
 from ncsim_core.models import ComponentIdentity
+
+if TYPE_CHECKING:
+    from ncsim_core.scenario.model import Scenario
 
 FORMAT: Final = "ncsim-trace"
 VERSION: Final = "1.0"
@@ -41,6 +44,12 @@ class TraceHeader:
     seed: int = 42
     sections: Mapping[str, object] = field(default_factory=dict)
     software: str = ""
+
+    @classmethod
+    def of(cls, scenario: "Scenario") -> Self:
+        """Return the header of the trace of a scenario's run."""
+        config = scenario.config
+        return cls(scenario.name, scenario.sha256, config.seed, config.sections)
 
 
 class NodeRow(NamedTuple):
