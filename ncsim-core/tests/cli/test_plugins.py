@@ -107,6 +107,21 @@ def test_show_takes_the_key_of_a_scenario_for_a_kind():
     assert "no options" in run("show", "routing", "direct").output
 
 
+def test_show_of_a_config_section_prints_its_keys(fake_dist):
+    gain = {"type": "number", "minimum": 0, "default": 0, "description": "In dB."}
+    schema = {"type": "object", "additionalProperties": False, "properties": {"gain_dB": gain}}
+    section = f'Section(name="antenna", summary="All antennas.", schema={schema})'
+    declaration = f"{DECLARATION}\n@hookimpl\ndef ncsim_sections():\n    return [{section}]\n"
+    fake_dist("antenna-dist", {"antenna_declaration": declaration})
+
+    lines = run("show", "section", "antenna").output.splitlines()
+
+    assert lines[0] == "qualified name: antenna-dist/antenna"
+    assert "summary: All antennas." in lines
+    assert lines[-1].split() == ["gain_dB", "number", "0", ">=", "0", "In", "dB."]
+    assert "there are: " in str(run("show", "section", "aerial").exception)
+
+
 def test_show_of_an_unknown_name_or_kind_says_what_there_is():
     assert isinstance(run("show", "scheduler", "manuel").exception, UnknownComponentError)
     assert isinstance(run("show", "planner", "manual").exception, ScenarioError)

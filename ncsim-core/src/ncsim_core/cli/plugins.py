@@ -13,7 +13,7 @@ from ncsim_core.errors import PluginError, ScenarioError
 from ncsim_core.plugins import KINDS
 
 if TYPE_CHECKING:
-    from ncsim_core.registry import PluginRecord, RegisteredComponent, Registry
+    from ncsim_core.registry import PluginRecord, RegisteredComponent, RegisteredSection, Registry
     from ncsim_core.testing import CheckResult
 
 app = typer.Typer(
@@ -21,6 +21,9 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Look at installed plug-ins, check them, and start a new one.",
 )
+
+SECTION = "section"  # of config; shown as a component is
+SHOWN = ("qualified_name", "version", "summary", "source", "factory", "capabilities")
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
@@ -44,9 +47,9 @@ def list_plugins(as_json: AsJson = False) -> None:
 
 @app.command()
 def show(kind: str, name: str, as_json: AsJson = False) -> None:
-    """Show one component: where it comes from, and a table of its options.
+    """Show one component or config section: where it comes from, and a table of its options.
 
-    KIND is a kind such as routing_model, or its key in a scenario such as routing.
+    KIND is a kind such as routing_model, its key in a scenario such as routing, or section.
 
     Example: ncsim plugins show scheduler round_robin
     """
@@ -54,16 +57,20 @@ def show(kind: str, name: str, as_json: AsJson = False) -> None:
     from ncsim_core.registry import get_registry
 
     registry = get_registry()
-    registered = registry.lookup(_kind_of(kind), name)
-    data = _component_as_data(registered)
-    schema = registry.options_schema(registered)
+    if kind == SECTION:
+        section = _section_named(registry, name)
+        data, schema = _section_as_data(section), section.schema
+    else:
+        registered = registry.lookup(_kind_of(kind), name)
+        data, schema = _component_as_data(registered), registry.options_schema(registered)
     if as_json:
         typer.echo(json.dumps(data | {"options": schema}, indent=2))
         return
-    for label in ("qualified_name", "version", "summary", "source", "factory", "capabilities"):
-        value = data[label]
-        text = ", ".join(value) if isinstance(value, list) else str(value)
-        typer.echo(f"{label.replace('_', ' ')}: {text or '-'}")
+    for label in SHOWN:
+        if label in data:
+            value = data[label]
+            text = ", ".join(value) if isinstance(value, list) else str(value)
+            typer.echo(f"{label.replace('_', ' ')}: {text or '-'}")
     for fault in _faults_of(data):
         typer.echo(f"cannot be used: {fault}")
     typer.echo("\n" + option_table(schema))
@@ -133,6 +140,27 @@ def _kind_of(text: str) -> str:
     return found
 
 
+def _section_named(registry: "Registry", name: str) -> "RegisteredSection":
+    """Return a config section.
+
+    Raises:
+        ScenarioError: No plug-in brings it.
+    """
+    sections = {each.section.name: each for each in registry.sections()}
+    if name not in sections:
+        there_are = ", ".join(sections) or "none"
+        raise ScenarioError(f"unknown config section {name!r}; there are: {there_are}")
+    return sections[name]
+
+
+def _section_as_data(registered: "RegisteredSection") -> dict[str, object]:
+    return {
+        "qualified_name": f"{registered.distribution}/{registered.section.name}",
+        "version": registered.version,
+        "summary": registered.section.summary,
+    }
+
+
 def _plugin_as_data(registry: "Registry", record: "PluginRecord") -> dict[str, object]:
     components = [
         _component_as_data(each)
@@ -175,10 +203,10 @@ def _component_as_data(registered: "RegisteredComponent") -> dict[str, object]:
 
 
 def _faults_of(component: dict[str, object]) -> Iterator[str]:
-    missing = component["missing_requirements"]
+    missing = component.get("missing_requirements")
     if isinstance(missing, list):
         yield from (f"needs {each}" for each in missing)
-    if component["fault"]:
+    if component.get("fault"):
         yield str(component["fault"])
 
 
