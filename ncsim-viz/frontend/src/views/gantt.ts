@@ -14,6 +14,9 @@ const BELOW = 8;
 /** Above so many intervals in the window, pixels are drawn instead of shapes. */
 export const PAINTED = 3000;
 
+/** In smaller bars, steps of the rate cannot be seen and are not drawn. */
+const STEPS_px = { width: 4, height: 7 };
+
 const lanesOf = (ctx: Context): Lanes => ctx.lanesOf(ctx.ui.lanes);
 
 /** Height of a lane: enough to read, more where there is room, and as little as it takes to fit. */
@@ -121,7 +124,9 @@ function paintTask(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i
 function paintTransfer(p: Painter, ctx: Context, row: Row, s: Scale, x: number, x0: number, width: number): void {
   const { run, colours } = ctx;
   const fill = colours.categories[run.exDag.data[x] % colours.categories.length];
-  p.rect(x0, row.top, width, row.height, { fill, alpha: 0.2 });
+  const isSmall = row.height < STEPS_px.height || width < STEPS_px.width;
+  p.rect(x0, row.top, width, row.height, { fill, alpha: isSmall ? 0.6 : 0.2 });
+  if (isSmall) return;
   const solo = run.soloRate(x) || 1;
   const end = x0 + width;
   const steps = run.stepsOf(x);
