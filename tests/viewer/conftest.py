@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import time
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,19 @@ def open_page(browser):
     for page in opened:
         page.close()
     assert faults == []
+
+
+@pytest.fixture
+def until():
+    """Wait until an expression holds; unlike Playwright's wait also under the page's own policy."""
+
+    def waiting(page, expression, timeout_s=20.0):
+        end_s = time.monotonic() + timeout_s
+        while not page.evaluate(expression):
+            assert time.monotonic() < end_s, f"not in {timeout_s} s: {expression}"
+            page.wait_for_timeout(30)
+
+    return waiting
 
 
 @pytest.fixture

@@ -229,6 +229,18 @@ def test_presets_are_made_by_the_generators(client):
     assert client.post("/api/yaml", {"document": answer["document"]})[1]["yaml"] == answer["yaml"]
 
 
+def test_a_preset_may_leave_bandwidths_to_a_radio(client):
+    request = {
+        "network": {"type": "grid", "rows": 2, "columns": 2},
+        "dags": {"type": "paper", "tasks": 5},
+    }
+
+    status, answer = client.post("/api/preset", request)
+
+    assert status == 200
+    assert "bandwidth" not in answer["document"]["scenario"]["network"]["links"][0]
+
+
 def test_a_preset_says_what_is_wrong_with_it(client):
     request = {"network": {"type": "line", "nodes": 0}, "dags": {"type": "chain"}}
 

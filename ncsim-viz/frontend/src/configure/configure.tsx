@@ -78,7 +78,8 @@ function Editor({ service, offer }: { service: Service; offer: Offer }) {
       <section class="form" aria-label="Form" tabIndex={0}>
         {offer.catalogue.broken.map((each) => <p class="fault" key={each.distribution}>{each.distribution} could not be loaded: {each.detail}</p>)}
         <Presets service={service} generators={offer.catalogue.generators} schema={offer.schema} document={scenario.document} put={scenario.fromDocument} />
-        {propertiesOf(offer.schema, offer.schema).filter(([name]) => !name.startsWith("$")).map(([name, each]) => (
+        {scenario.document === null && <p role="status">{scenario.check ? "The text is no mapping: mend the YAML first." : "loading …"}</p>}
+        {scenario.document !== null && propertiesOf(offer.schema, offer.schema).filter(([name]) => !name.startsWith("$")).map(([name, each]) => (
           <Field key={name} name={name} schema={resolved(each, offer.schema)} root={offer.schema} value={scenario.document?.[name]} path={[name]} faults={faults} required change={change} />
         ))}
       </section>
@@ -109,10 +110,10 @@ function RunBox({ service, yaml, check, fail }: { service: Service; yaml: string
   };
   return (
     <div class="run-box">
-      <label>Name <input value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+      <label>Run name <input value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
       <button class="strong" disabled={!check?.valid} onClick={() => void start()}>Run</button>
       <span role="status">{check === null ? "checking …" : check.valid ? "valid" : `${check.faults.length} ${check.faults.length === 1 ? "fault" : "faults"}`}
-        {sum && `: ${Object.entries(sum).map(([what, many]) => `${many} ${what}`).join(", ")}`}</span>
+        {sum && `: ${Object.entries(sum).map(([what, many]) => `${what} ${many}`).join(", ")}`}</span>
     </div>
   );
 }

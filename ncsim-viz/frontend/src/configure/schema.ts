@@ -114,6 +114,21 @@ export function emptyMeans(schema: Schema): string {
   return "default" in schema ? (schema.default === null ? "none" : textOf(schema.default)) : "";
 }
 
+const COUNT = 4;
+const LENGTH = 100;
+
+/** A value to begin with: the default, the first choice, or a small number within bounds. */
+export function sampleOf(schema: Schema): unknown {
+  if ("default" in schema) return schema.default;
+  if (Array.isArray(schema.enum)) return schema.enum[0];
+  const [type] = typesOf(schema);
+  const least = Number(schema.minimum ?? schema.exclusiveMinimum ?? -Infinity);
+  const most = Number(schema.maximum ?? Infinity);
+  if (type === "integer") return Math.min(most, Math.max(least, COUNT));
+  if (type === "number") return most <= LENGTH && least > -Infinity ? (least + most) / 2 : Math.max(least, LENGTH);
+  return type === "boolean" ? false : undefined;
+}
+
 export const pointerOf = (path: (string | number)[]): string => path.map((each) => `/${String(each).replaceAll("~", "~0").replaceAll("/", "~1")}`).join("");
 
 /** A copy of a value with one place changed; `undefined` takes the place away. */

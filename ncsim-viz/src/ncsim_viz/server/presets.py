@@ -3,13 +3,14 @@
 A parameter too many zeros long must cost nobody his viewer.
 """
 
+import contextlib
 import json
 import sys
 from collections.abc import Mapping
 from typing import Any, Final, cast
 
 from ncsim_core.scenario.faults import ScenarioFaults
-from ncsim_core.scenario.model import DEFAULT_SEED
+from ncsim_core.scenario.model import DEFAULT_SEED, Scenario
 from ncsim_core.scenario.yaml_text import dump_yaml
 from ncsim_core.sweep.reading import load_sweep
 from ncsim_core.sweep.resolving import Resolver
@@ -21,6 +22,7 @@ from ncsim_viz.server.scenarios import Document, fault_row
 
 LIMITS: Final = Limits(wall_s=20.0, memory_MB=2000, output_MB=50)
 ENTRY: Final = "ncsim_viz.server.presets:main"
+RADIO: Final = {"link_model": "wifi"}
 PARTS: Final = ("network", "dags")
 MAX_REQUEST_CHARACTERS: Final = 20_000
 
@@ -66,10 +68,9 @@ def generated(request: Mapping[str, Any]) -> Document:
         RequestError: A parameter is unknown, missing or out of range; all faults are listed.
     """
     parts = {name: request[name] for name in PARTS}
-    seeds = [request.get("seed", DEFAULT_SEED)]
+    seed = request.get("seed", DEFAULT_SEED)
     try:
-        plan = load_sweep({"sweep": {"base": parts, "replicate": {"seeds": seeds}}})
-        scenario = Resolver(plan).scenario(next(plan.runs()))
+        scenario = _made(parts, seed)
     except ScenarioFaults as error:
         faults = [_in_request(fault_row(each)) for each in error.to_json()]
         raise bad("the generators refuse these parameters", {"faults": faults}) from error
@@ -79,6 +80,21 @@ def generated(request: Mapping[str, Any]) -> Document:
     del rows["config"]
     document = {"scenario": rows}
     return {"yaml": dump_yaml(document), "document": document}
+
+
+def _made(parts: Mapping[str, Any], seed: int) -> Scenario:
+    """Return what generators make; where links lack a bandwidth, for a radio that derives it."""
+
+    def made(base: Mapping[str, Any]) -> Scenario:
+        plan = load_sweep({"sweep": {"base": base, "replicate": {"seeds": [seed]}}})
+        return Resolver(plan).scenario(next(plan.runs()))
+
+    try:
+        return made(parts)
+    except ScenarioFaults:
+        with contextlib.suppress(ScenarioFaults):
+            return made({**parts, "config": RADIO})
+        raise
 
 
 def _in_request(fault: Document) -> Document:
