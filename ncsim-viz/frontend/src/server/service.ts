@@ -2,10 +2,11 @@
 
 import type { Page } from "../app/page";
 import { EMPTY } from "../app/page";
+import type { Extras } from "../data/extras";
 import { loadRun } from "../data/load";
 import type { Run } from "../data/run";
 import type { Study } from "../data/study";
-import { Api, wordsOf, type Job, type ServerInfo } from "./api";
+import { Api, Refusal, wordsOf, type Job, type ServerInfo } from "./api";
 import { Live } from "./live";
 
 const POLL_ms = 500;
@@ -85,17 +86,29 @@ export class Service {
     const extras = study ? { study } : {};
     this.live = new Live((from) => this.api.stream(path, from), {
       opened: (run) => {
-        this.lastEvents = 0;
+        this.lastEvents = run.events;
         page.open({ run, other: null, extras });
       },
       grew: (run) => this.grew(run),
       ended: (run, status) => {
         if (status === "abandoned" || status === "gone") this.say(`the run is ${status}: nothing more will come`);
-        void this.api.extras(path).then((found) => {
-          if (page.run === run) page.open({ run, other: null, extras: { ...found, ...extras } });
-        }, (error: unknown) => this.say(wordsOf(error)));
+        void this.complete(path, run, extras);
       },
     });
+  }
+
+  /** Add what Python computes of a run that has ended; its folder takes its name a moment after its last record. */
+  private async complete(path: string, run: Run, extras: Extras): Promise<void> {
+    while (this.page.run === run) {
+      try {
+        const found = await this.api.extras(path);
+        if (this.page.run === run) this.page.open({ run, other: null, extras: { ...found, ...extras } });
+        return;
+      } catch (error) {
+        if (!(error instanceof Refusal && error.status === 409)) return this.say(wordsOf(error));
+        await new Promise((resolve) => setTimeout(resolve, POLL_ms));
+      }
+    }
   }
 
   /** A playhead at the end stays at the end. */
