@@ -1,9 +1,13 @@
 import math
+from dataclasses import replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ncsim_wifi.radio import Radio
 from ncsim_wifi.validation import fluid, internal
 from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
-from ncsim_wifi.validation.scenes import Flow, parallel, single
+from ncsim_wifi.validation.scenes import Flow, Scene, parallel, single
 
 
 def test_a_lone_flow_takes_size_over_goodput():
@@ -50,3 +54,33 @@ def test_links_of_the_cascade_pause_and_resume():
 
     assert [at_first[flow] == 0.0 for flow in range(5)] == [False, True, True, True, False]
     assert max(fluid.ends_s(scene)) < math.inf
+
+
+PLACES = st.tuples(st.integers(0, 30), st.integers(0, 30)).map(
+    lambda at: (7.3 * at[0], 8.1 * at[1])
+)
+LINKS = st.lists(
+    st.tuples(PLACES, PLACES).filter(lambda ends: 0.0 < math.dist(*ends) < 120.0),
+    min_size=1,
+    max_size=6,
+    unique=True,
+)
+FLOWS = st.builds(
+    Flow,
+    st.integers(0, 5),
+    st.sampled_from([0.5, 2.0, 5.0]),
+    st.sampled_from([0.0, 0.0, 0.1, 0.7, 1.3]),
+)
+RADIOS = st.builds(Radio, rts_cts=st.booleans(), capture_margin_dB=st.sampled_from([0.0, 5.0, 8.0]))
+
+
+@settings(max_examples=40)
+@given(LINKS, st.lists(FLOWS, min_size=1, max_size=8), RADIOS)
+def test_the_engine_follows_the_fluid_in_any_scene(ends, flows, radio):
+    on_links = tuple(replace(flow, link=flow.link % len(ends)) for flow in flows)
+    scene = Scene(tuple(a for a, _ in ends), tuple(b for _, b in ends), on_links, radio)
+    measured = measure(scene)
+
+    ends_s = [measured.end_s(flow) for flow in range(len(flows))]
+
+    assert ends_s == pytest.approx(fluid.ends_s(scene), abs=2e-5)
