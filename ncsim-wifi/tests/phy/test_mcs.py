@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ncsim_core.errors import ScenarioError
+from ncsim_core.registry import get_registry
 from ncsim_wifi import tables
 from ncsim_wifi.phy.mcs import (
     RateTable,
@@ -69,9 +70,17 @@ def test_a_table_is_three_columns_of_text():
     assert parse_table(["mcs,snr_min_dB,rate_Mbps", "0,5,8.6"]) == RateTable((5.0,), (8.6,))
 
 
-def test_a_new_file_is_a_new_standard_from_schema_to_engine(tmp_path, monkeypatch):
+@pytest.fixture
+def own_tables(tmp_path, monkeypatch):
+    """Put another folder in the place of the tables, also for the schema that a process keeps."""
     monkeypatch.setattr(tables, "FOLDER", tmp_path)
-    (tmp_path / "slow.csv").write_text("mcs, snr_min_dB, rate_Mbps\n0, 3, 1\n\n1, 20, 4\n")
+    get_registry.cache_clear()
+    yield tmp_path
+    get_registry.cache_clear()
+
+
+def test_a_new_file_is_a_new_standard_from_schema_to_engine(own_tables):
+    (own_tables / "slow.csv").write_text("mcs, snr_min_dB, rate_Mbps\n0, 3, 1\n\n1, 20, 4\n")
     radio = Radio(wifi_standard="slow", channel_width_mhz=40)
 
     far, near = (
