@@ -68,6 +68,7 @@ def test_help_imports_nothing_heavy():
 
     loaded = set(done.stdout.rpartition("LOADED")[2].split())
     assert loaded & HEAVY == set()
+    assert not any(name.startswith("ncsim_viz") for name in loaded)
     assert "Usage: ncsim" in done.stdout
 
 

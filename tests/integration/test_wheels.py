@@ -98,6 +98,22 @@ def test_core_and_wifi_run_a_full_scenario_without_saga(clean):
     assert found.returncode != 0
 
 
+def test_the_viewer_needs_core_only_and_neither_node_nor_matplotlib(clean, builder, tmp_path):
+    install(clean, builder, "ncsim-viz")
+    out, report = tmp_path / "out", tmp_path / "report.html"
+    steps = [
+        ncsim(clean, "run", ROOT / "examples" / "two_hop.yaml", "-o", out),
+        ncsim(clean, "view", out, "-o", report),
+        ncsim(clean, "view", out, "--terminal"),
+    ]
+    plotted = ncsim(clean, "plot", out, "--kind", "gantt", "-o", tmp_path / "gantt.svg")
+
+    assert [step.returncode for step in steps] == [0, 0, 0], [step.stderr for step in steps]
+    assert "<script" in report.read_text(encoding="utf-8")
+    assert plotted.returncode == 1
+    assert "figures need matplotlib: pip install" in plotted.stderr
+
+
 def test_a_scheduler_that_is_not_installed_is_named_with_the_package_to_install(clean):
     done = ncsim(clean, "run", ROOT / "examples" / "grid_4x4.yaml")
 
