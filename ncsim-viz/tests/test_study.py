@@ -112,6 +112,7 @@ def test_a_condition_chooses_runs(study):
     document = study_document(study, where={"tasks": "1"})
 
     assert len(document["runs"]["rows"]) == 4
+    assert document["numbers"] == [0, 2, 4, 6]
     assert len(document["factors"][2]["values"]) == 2  # what could be chosen stays
     with pytest.raises(ScenarioError, match="no_such"):
         study_document(study, where={"no_such": "1"})

@@ -65,7 +65,10 @@ def _serve(folder: Path, port: int, limits: tuple[float, int], *, opens_browser:
 
     if not folder.is_dir():
         raise ScenarioError(f"{folder}: is no folder; --serve takes one with runs or studies in it")
-    server = ViewerServer(folder, port, Limits(wall_s=limits[0], memory_MB=limits[1]))
+    try:
+        server = ViewerServer(folder, port, Limits(wall_s=limits[0], memory_MB=limits[1]))
+    except OSError as error:
+        raise ScenarioError(f"port {port}: {error.strerror}; --port 0 takes a free one") from error
     typer.echo(instructions(server))
     sys.stdout.flush()
     if opens_browser:

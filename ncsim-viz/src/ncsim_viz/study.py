@@ -55,7 +55,7 @@ def study_document(
         _, planned = store.current()
         counts = store.counts()
         every = table_of(store)
-    runs = _selected(every, where or {})
+    numbers, runs = _selected(every, where or {})
     matrix, roles, note = _matrix(runs, policy, mode)
     slowdowns = _slowdowns(runs, mode)
     left_out = max(0, len(runs.rows) - MAX_ROWS)
@@ -67,6 +67,7 @@ def study_document(
         "factors": [_factor(every, name) for name in parameters(every)],
         "roles": roles,
         "note": " ".join(filter(None, notes)),
+        "numbers": numbers[:MAX_ROWS],
         "runs": _table(replace(runs, rows=runs.rows[:MAX_ROWS])),
         "winners": None if matrix is None else _table(matrix),
         "totals": None if matrix is None else _table(policy_totals(matrix)),
@@ -78,11 +79,16 @@ def study_document(
     }
 
 
-def _selected(runs: Table, where: Mapping[str, str]) -> Table:
+def _selected(runs: Table, where: Mapping[str, str]) -> tuple[list[int], Table]:
+    """Return the runs that meet conditions, and their places among all."""
     wanted = {column_of(runs, name): value for name, value in where.items()}
     places = [(runs.columns.index(name), value) for name, value in wanted.items()]
-    rows = (row for row in runs.rows if all(shown_value(row[at]) == each for at, each in places))
-    return replace(runs, rows=tuple(rows))
+    numbers = [
+        number
+        for number, row in enumerate(runs.rows)
+        if all(shown_value(row[at]) == value for at, value in places)
+    ]
+    return numbers, replace(runs, rows=tuple(runs.rows[number] for number in numbers))
 
 
 def _matrix(runs: Table, policy: str, mode: str) -> tuple[Table | None, dict[str, str] | None, str]:

@@ -1,6 +1,8 @@
 import os
 import subprocess
 import sys
+import time
+from unittest.mock import patch
 
 import pytest
 from ncsim_viz.server.entries import Entries
@@ -24,8 +26,10 @@ def put(folder, text=HEADER + DONE):
     return folder
 
 
-def partial(folder, name, process, text=HEADER):
-    return put(folder / f".{name}.partial-{process}-0123abcd", text)
+def partial(folder, name, process, text=HEADER, age_s=60):
+    made = put(folder / f".{name}.partial-{process}-0123abcd", text)
+    os.utime(made / "trace.jsonl", (time.time() - age_s,) * 2)
+    return made
 
 
 @pytest.fixture
@@ -63,6 +67,12 @@ def test_what_a_killed_run_left_is_told_from_a_live_one(tmp_path, ended_process)
     partial(tmp_path, "killed", ended_process)
 
     assert ids(tmp_path) == {"killed": "abandoned"}
+
+
+def test_a_run_of_another_machine_lives_as_long_as_its_trace_grows(tmp_path, ended_process):
+    partial(tmp_path, "elsewhere", ended_process, age_s=1)
+
+    assert ids(tmp_path) == {"elsewhere": "running"}
 
 
 def test_a_run_that_is_made_again_is_shown_live_and_its_remains_never(tmp_path, ended_process):
@@ -124,6 +134,17 @@ def test_a_list_says_how_runs_ended(tmp_path, ended_process):
     }  # fmt: skip
     whole = next(each for each in document["entries"] if each["id"] == "whole")
     assert (whole["name"], whole["makespan_s"], whole["is_live"]) == ("small", 5.0, False)
+
+
+def test_a_list_notices_that_a_process_has_died(tmp_path, ended_process):
+    made = partial(tmp_path, "run", ended_process, age_s=1)
+    entries = Entries(Library(tmp_path))
+    before = entries.document()["entries"][0]["status"]
+    time_s = (made / "trace.jsonl").stat().st_mtime
+    with patch("ncsim_viz.server.library.time.time", lambda: time_s + 60):
+        after = entries.document()["entries"][0]["status"]
+
+    assert (before, after) == ("running", "abandoned")
 
 
 def test_a_list_follows_changes(tmp_path):

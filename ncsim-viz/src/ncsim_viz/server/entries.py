@@ -10,13 +10,14 @@ from ncsim_core.errors import NcsimError
 from ncsim_core.sweep.store import STORE_NAME, Store
 from ncsim_core.trace.output import METRICS_NAME
 from ncsim_core.trace.reader import read_trace
-from ncsim_core.trace.records import Done
 from ncsim_core.trace.run_trace import TRUNCATED
 from ncsim_core.units import s_from_us
 
-from ncsim_viz.server.library import Library, Place
+from ncsim_viz.server.library import Library, Place, Stage
+from ncsim_viz.server.tail import last_record
 
 MAX_ENTRIES: Final = 2000
+MAX_KNOWN: Final = 4 * MAX_ENTRIES
 
 Entry: TypeAlias = dict[str, object]
 Stamp: TypeAlias = tuple[int, int]
@@ -31,20 +32,22 @@ class Entries:
 
     def __init__(self, library: Library) -> None:
         self._library = library
-        self._known: dict[Path, tuple[Stamp, Entry]] = {}
+        self._known: dict[tuple[Path, Stage], tuple[Stamp, Entry]] = {}
 
     def document(self) -> dict[str, object]:
         """Return the list, ready for JSON."""
         places = self._library.places()
         entries = [self.entry(place) for place in islice(places, MAX_ENTRIES)]
         left_out = sum(1 for _ in places)
-        return {"title": self._library.root.name, "entries": entries, "left_out": left_out}
+        return {"title": self._library.title, "entries": entries, "left_out": left_out}
 
     def entry(self, place: Place) -> Entry:
         """Return what the list says about one run or study."""
         trace = place.trace
         path = place.folder / STORE_NAME if place.kind == "study" else trace
         size, stamp = _stamp(path or place.folder / METRICS_NAME)
+        if place.kind == "study":  # what is written last is in its log
+            stamp = max(stamp, _stamp(place.folder / f"{STORE_NAME}-wal")[1])
         head: Entry = {
             "id": place.id,
             "kind": place.kind,
@@ -55,13 +58,15 @@ class Entries:
         return head | self._remembered(place, (size, stamp))
 
     def _remembered(self, place: Place, stamp: Stamp) -> Entry:
-        key = place.folder
+        key = place.folder, place.stage
         known = self._known.get(key)
-        if known is None or known[0] != stamp or place.stage == "running":
+        if known is None or known[0] != stamp:
             try:
                 about = _study(place) if place.kind == "study" else _run(place)
             except (NcsimError, OSError, ValueError) as error:
                 about = _unreadable(place, error)
+            if len(self._known) > MAX_KNOWN:  # of folders that are gone
+                self._known.clear()
             self._known[key] = known = (stamp, about)
         return known[1]
 
@@ -95,13 +100,11 @@ def _ending(place: Place) -> tuple[str, float | None]:
     if metrics is not None:
         makespan_s = metrics.get("makespan_s")
         return str(metrics.get("status")), makespan_s if isinstance(makespan_s, float) else None
-    if place.trace is not None:
-        with read_trace(place.trace) as reader:
-            for record in reader:
-                if isinstance(record, Done):
-                    us = record.makespan_us
-                    return record.status, None if us is None else s_from_us(us)
-    return TRUNCATED, None
+    done = None if place.trace is None else last_record(place.trace)
+    if done is None:
+        return TRUNCATED, None
+    us = done.get("makespan_us")
+    return str(done.get("status")), s_from_us(us) if isinstance(us, int) else None
 
 
 def _json(path: Path) -> Mapping[str, object] | None:

@@ -4,8 +4,11 @@ A run that goes on lies in a hidden folder that takes its name at the end
 (``ncsim_core.trace.output``), and its trace grows there.
 """
 
+import contextlib
 import os
 import re
+import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +24,8 @@ from ncsim_viz.server.guards import is_inside, path_below
 MAX_DEPTH: Final = 8
 """Folders within folders that are looked through."""
 MAX_FOLDERS: Final = 20_000
+FRESH_s: Final = 10.0
+"""A run of another machine, whose processes cannot be seen, lives as long as its trace grows."""
 PARTIAL: Final = re.compile(r"\.(?P<name>.+)\.partial-(?P<process>\d+)-[0-9a-f]{8}\Z")
 
 Stage: TypeAlias = Literal["finished", "running", "abandoned"]
@@ -58,6 +63,11 @@ class Library:
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
+
+    @property
+    def title(self) -> str:
+        """Return what people call the folder."""
+        return self.root.name or str(self.root)
 
     def places(self) -> Iterator[Place]:
         """Yield all runs and studies, folder by folder."""
@@ -129,7 +139,8 @@ class Library:
             match = PARTIAL.match(name)
             if match is None or match["name"].startswith("."):
                 continue
-            stage: Stage = "running" if _is_alive(int(match["process"])) else "abandoned"
+            is_running = _is_alive(int(match["process"])) or _is_fresh(folder / name)
+            stage: Stage = "running" if is_running else "abandoned"
             place = Place(self._id(folder / match["name"]), folder / name, "run", stage)
             earlier = found.get(match["name"])
             is_better = earlier is None or earlier.stage == "abandoned"
@@ -178,6 +189,9 @@ def _folders_in(folder: Path) -> list[str]:
 
 
 def _is_alive(process: int) -> bool:
+    """Return whether a process of this machine lives."""
+    if sys.platform == "win32":
+        return True  # there, os.kill would do something else
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -185,3 +199,12 @@ def _is_alive(process: int) -> bool:
     except (PermissionError, OverflowError):
         return True
     return True
+
+
+def _is_fresh(folder: Path) -> bool:
+    """Return whether a run's trace was written to just now."""
+    times_s = []
+    for name in TRACE_NAMES:
+        with contextlib.suppress(OSError):
+            times_s.append((folder / name).stat().st_mtime)
+    return abs(time.time() - max(times_s, default=0.0)) < FRESH_s

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,6 +23,7 @@ from ncsim_core.scenario.loader import parse_scenario
 from ncsim_core.scenario.model import Scenario
 from ncsim_core.scenario.source import Source, read_document
 from ncsim_core.scenario.yaml_text import dump_yaml
+from ncsim_core.sweep.axes import Run
 from ncsim_core.sweep.resolving import Resolver
 from ncsim_core.sweep.store import Store
 
@@ -101,15 +103,20 @@ def task_count(scenario: Scenario) -> int:
 def study_scenario(folder: Path, number: int) -> str:
     """Return the scenario of one run of a study as YAML.
 
+    Args:
+        folder: Of the study.
+        number: Which of its runs, in the order of its table, from 0.
+
     Raises:
         RequestError: It has no such run.
     """
     with Store(folder, must_exist=True) as store:
         plan, _ = store.current()
-    run = next((each for each in plan.runs() if each.number == number), None)
-    if run is None:
+        row = next(islice(store.rows(), number, None), None)
+    if row is None:
         raise missing(f"run {number}")
-    return Resolver(plan).scenario(run).to_yaml()
+    values, seed, _ = row
+    return Resolver(plan).scenario(Run(number, values, seed)).to_yaml()
 
 
 def catalogue() -> Document:

@@ -81,8 +81,7 @@ class ViewerServer(ThreadingHTTPServer):
 
     def page(self) -> str:
         """Return the viewer as it is served."""
-        title = self.site.library.root.name
-        return served_page(title, self.token, can_run=self.site.jobs is not None)
+        return served_page(self.site.library.title, self.token, can_run=self.site.jobs is not None)
 
     def rest(self, for_s: float) -> bool:
         """Wait; ``False`` when the server stops."""

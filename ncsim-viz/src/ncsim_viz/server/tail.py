@@ -9,7 +9,7 @@ import gzip
 import json
 import os
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple, Self, TypeAlias, cast
@@ -131,6 +131,14 @@ def follow(locate: Locate, after: Mark = START) -> Iterator[Step]:
             mark = reading.mark
 
 
+def last_record(path: Path) -> Mapping[str, object] | None:
+    """Return the record that ends a trace, ``None`` if it has none; reads without parsing."""
+    last = b""
+    for step in follow(lambda: Source(path, is_growing=False)):
+        last = step.lines if isinstance(step, Records) else last
+    return _done_in(last)
+
+
 def _steps(reading: "_Reading", locate: Locate) -> Iterator[Step]:
     """Yield what one file holds; stops without an ``End`` when another has taken its place."""
     while True:
@@ -225,10 +233,17 @@ def _opened(path: Path) -> BinaryIO:
 
 def _status_in(lines: bytes) -> str | None:
     """Return how the run ended if the last line says so."""
+    done = _done_in(lines)
+    return None if done is None else str(done.get("status", "truncated"))
+
+
+def _done_in(lines: bytes) -> Mapping[str, object] | None:
+    """Return the last line if it is the record that ends a trace."""
     last = lines[lines.rfind(b"\n", 0, -1) + 1 :]
     if DONE not in last:
         return None
     try:
-        return str(json.loads(last)["status"])
-    except (ValueError, KeyError, TypeError):
-        return "truncated"
+        record = json.loads(last)
+    except ValueError:
+        return None
+    return record if isinstance(record, dict) else None
