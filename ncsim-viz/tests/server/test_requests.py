@@ -53,6 +53,18 @@ def test_extras_are_those_of_the_report(client, run_folder, scenario_text):
     assert extras["scenario"] == scenario_text
 
 
+def test_extras_are_those_of_the_run_as_it_is_now(client, run_folder):
+    before = client.get("/api/extras", run="small")[1]
+    again = client.get("/api/extras", run="small")[1]
+    trace = run_folder / "trace.jsonl"
+    trace.write_text("".join(trace.read_text().splitlines(keepends=True)[:-1]))
+    after = client.get("/api/extras", run="small")[1]
+
+    assert before == again
+    assert before["metrics"][0]["status"] == "completed"
+    assert after["metrics"][0]["status"] == "truncated"
+
+
 def events_of(client, headers, lines=10_000, **query):
     """Return the events of a stream as (id, event, data), the connection dropped after a few."""
     address = "&".join(f"{key}={value}" for key, value in query.items())

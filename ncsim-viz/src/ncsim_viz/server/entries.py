@@ -45,33 +45,33 @@ class Entries:
         """Return what the list says about one run or study."""
         trace = place.trace
         path = place.folder / STORE_NAME if place.kind == "study" else trace
-        size, stamp = _stamp(path or place.folder / METRICS_NAME)
+        size, changed = stamp(path or place.folder / METRICS_NAME)
         if place.kind == "study":  # what is written last is in its log
-            stamp = max(stamp, _stamp(place.folder / f"{STORE_NAME}-wal")[1])
+            changed = max(changed, stamp(place.folder / f"{STORE_NAME}-wal")[1])
         head: Entry = {
             "id": place.id,
             "kind": place.kind,
             "is_live": place.stage == "running",
-            "modified_s": stamp / 1e9,
+            "modified_s": changed / 1e9,
             "bytes": size if path is not None and place.kind == "run" else None,
         }
-        return head | self._remembered(place, (size, stamp))
+        return head | self._remembered(place, (size, changed))
 
-    def _remembered(self, place: Place, stamp: Stamp) -> Entry:
+    def _remembered(self, place: Place, changed: Stamp) -> Entry:
         key = place.folder, place.stage
         known = self._known.get(key)
-        if known is None or known[0] != stamp:
+        if known is None or known[0] != changed:
             try:
                 about = _study(place) if place.kind == "study" else _run(place)
             except (NcsimError, OSError, ValueError) as error:
                 about = _unreadable(place, error)
             if len(self._known) > MAX_KNOWN:  # of folders that are gone
                 self._known.clear()
-            self._known[key] = known = (stamp, about)
+            self._known[key] = known = (changed, about)
         return known[1]
 
 
-def _stamp(path: Path) -> Stamp:
+def stamp(path: Path) -> Stamp:
     """Return size and time of change of a file; zeros if it is not there."""
     try:
         status = path.stat()

@@ -1,7 +1,7 @@
 """The requests of ``docs/viewer-api.md``, each a function from parameters to plain data."""
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeAlias
 from urllib.parse import parse_qs
@@ -12,7 +12,7 @@ from ncsim_core.scenario.yaml_text import dump_yaml
 from ncsim_core.trace.loading import load_run
 
 from ncsim_viz.extras import comparison_of, extras_of
-from ncsim_viz.server.entries import Entries
+from ncsim_viz.server.entries import Entries, stamp
 from ncsim_viz.server.errors import bad, conflict
 from ncsim_viz.server.jobs import Jobs
 from ncsim_viz.server.library import Library, Place
@@ -25,6 +25,8 @@ from ncsim_viz.server.scenarios import (
     validation,
 )
 from ncsim_viz.study import study_document
+
+MAX_REMEMBERED: Final = 8
 
 Query: TypeAlias = Mapping[str, list[str]]
 Answer: TypeAlias = Mapping[str, object]
@@ -39,12 +41,16 @@ class Site:
         entries: Describes them.
         jobs: The queue; ``None`` if nothing may be run.
         building: Held while models are built, which takes memory.
+        computing: Held while a run is summed up, so that it is done once.
+        remembered: What was last computed of which runs; of a long one it takes seconds.
     """
 
     library: Library
     entries: Entries
     jobs: Jobs | None
     building: threading.Lock = field(default_factory=threading.Lock)
+    computing: threading.Lock = field(default_factory=threading.Lock)
+    remembered: dict[tuple[object, ...], Answer] = field(default_factory=dict)
 
 
 def query_of(text: str) -> Query:
@@ -72,13 +78,23 @@ def _entries(site: Site, _: Query) -> Answer:
 
 
 def _extras(site: Site, query: Query) -> Answer:
-    place = _finished(site, one(query, "run"))
-    run = load_run(place.folder)
-    with site.building:
-        extras = extras_of(place.folder, run)
-    if "compare" in query:
-        other = _finished(site, one(query, "compare"))
-        names = place.id, other.id
+    names = [one(query, name) for name in ("run", "compare") if name in query or name == "run"]
+    places = [_finished(site, name) for name in names]
+    key = tuple((place.folder, stamp(place.trace or place.folder)) for place in places)
+    with site.computing:
+        if key not in site.remembered:
+            if len(site.remembered) >= MAX_REMEMBERED:
+                site.remembered.pop(next(iter(site.remembered)))
+            site.remembered[key] = _computed(places)
+        return site.remembered[key]
+
+
+def _computed(places: Sequence[Place]) -> Answer:
+    first, *others = places
+    run = load_run(first.folder)
+    extras = extras_of(first.folder, run)
+    for other in others:
+        names = first.id, other.id
         extras["comparison"] = comparison_of(run, load_run(other.folder), names)
     return extras
 
