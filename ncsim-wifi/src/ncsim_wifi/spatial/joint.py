@@ -25,7 +25,8 @@ class JointStages:
         self._hostile = hostile
         own = scene.station[hostile.link]
         directed = list(dict.fromkeys(zip(own.tolist(), hostile.station.tolist(), strict=True)))
-        mutual = [(u, w) for u, w in directed if u < w and (w, u) in set(directed)]
+        known = set(directed)
+        mutual = [(u, w) for u, w in directed if u < w and (w, u) in known]
         if not scene.settings.terms.joint_chains:
             mutual = []
         self.count = len(mutual)

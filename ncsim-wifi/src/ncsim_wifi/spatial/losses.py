@@ -269,9 +269,8 @@ def _ack_extension_us(
 ) -> FloatArray:
     """Return ext, by how much harmful acknowledgements prolong frames (MODEL 3.8)."""
     hostile = statics.hostile
-    harm = -np.expm1(-statics.ack_hazard[hostile.link])
-    of_link = harm * (scene.ack_us * (1.0 - traffic.loss) * traffic.attempts)
-    mine = scene.link_of_station[hostile.station]
-    extension_us = (of_link * mine).sum(axis=1)
+    each_us = scene.ack_us * (1.0 - traffic.loss) * traffic.attempts
+    extension_us = (-np.expm1(-statics.ack_hazard) * each_us) @ scene.link_of_station.T
+    extension_us = extension_us[hostile.link, hostile.station]
     is_harmful = kill >= scene.settings.approximations.ack_extension_kill
     return np.where(is_harmful & ~statics.stops_at_cts, extension_us, 0.0)
