@@ -35,6 +35,7 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
     silence: bool = True,
     energy_sensing: bool = True,
     far_noise: bool = True,
+    simulator_artefacts: bool = False,
     relaying: bool = True,
 ) -> "CsmaSpatialModel":
     """Return the model; the runs of a process share one per network and options.
@@ -49,6 +50,8 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
         silence: Who does not understand a frame waits another time after it.
         energy_sensing: Stations too weak to be sensed alone are sensed together.
         far_noise: Interferers beyond the nearest raise the noise.
+        simulator_artefacts: Links below the sensing threshold get nothing, and who loses a
+            signalling field finds the channel idle, as in ns-3.
         relaying: Relays of a transfer forward only what they receive; otherwise every hop is
             saturated.
 
@@ -65,6 +68,8 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
         silence,
         energy_sensing,
         far_noise,
+        dead_below_threshold=simulator_artefacts,
+        lost_signal_field=simulator_artefacts,
     )
     kind = CsmaSpatialRoutesModel if relaying else CsmaSpatialModel
     return context.cached(

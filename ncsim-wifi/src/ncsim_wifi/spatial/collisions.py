@@ -20,12 +20,21 @@ def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
         scene: The active links.
         noise_mW: Noise and far interferers of each link.
     """
-    rows = np.arange(len(scene.links))[:, None]
-    ratio_dB = scene.ratio_dB(scene.at_receiver_mW.T + noise_mW[:, None], rows)
     if scene.settings.rts_cts:
-        return np.where(ratio_dB < RTS_RATIO_dB, 1.0, 0.0)
+        return np.where(_ratio_dB(scene, noise_mW) < RTS_RATIO_dB, 1.0, 0.0)
+    return payload_loss(scene, noise_mW)
+
+
+def payload_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
+    """Return the loss of a data frame of link l that w overlaps as a whole, (links, stations)."""
+    ratio_dB = _ratio_dB(scene, noise_mW)
     loss = -np.expm1(-hazard(scene.scheme[:, None], ratio_dB))
     return np.where(ratio_dB < scene.settings.preamble_ratio_dB, 1.0, loss)
+
+
+def _ratio_dB(scene: Scene, noise_mW: FloatArray) -> FloatArray:
+    rows = np.arange(len(scene.links))[:, None]
+    return scene.ratio_dB(scene.at_receiver_mW.T + noise_mW[:, None], rows)
 
 
 def base_success(

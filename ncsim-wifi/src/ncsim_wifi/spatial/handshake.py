@@ -153,5 +153,7 @@ def unaware_starts(
 def silenced_share(scene: Scene) -> FloatArray:
     """Return which links' CTS silence whom though their sender does not, (links, stations)."""
     own = scene.station
+    if not scene.settings.rts_cts:
+        return np.zeros((len(own), scene.station_count))
     apart = ~scene.senses[own] & (np.arange(scene.station_count)[None, :] != own[:, None])
     return np.asarray(apart & scene.hears_receiver, np.float64)

@@ -12,7 +12,7 @@ from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import Exchange
 from ncsim_wifi.spatial.gaps import Gaps, counter_law, mean_remaining_count, survival
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
-from ncsim_wifi.spatial.overlap import joint_kill, meets_probability, overlap_us
+from ncsim_wifi.spatial.overlap import LARGEST_KILL, joint_kill, meets_probability, overlap_us
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics
 
@@ -25,6 +25,7 @@ class Traffic(NamedTuple):
 
     Args:
         on: A[u, w], probability that w is on while u may count.
+        same_slot: p[u, w], probability that w starts in the same slot as u.
         tau: Probability of an attempt per decision.
         rate_per_us: R_u, attempts per time.
         stages: q_u(k), share of attempts in each stage.
@@ -36,6 +37,7 @@ class Traffic(NamedTuple):
     """
 
     on: FloatArray
+    same_slot: FloatArray
     tau: FloatArray
     rate_per_us: FloatArray
     stages: FloatArray
@@ -92,7 +94,15 @@ def effective_hazard(scene: Scene, statics: Statics, traffic: Traffic) -> FloatA
         kill = joint_kill(hostile.delta[some], hostile.omega[some], present, hostile.helper_sets)
         result[some] = -2.0 * np.log1p(-kill)
     result = np.where(hostile.is_strong, np.maximum(result, statics.alone_hazard), result)
-    return np.maximum(result, 1e-9)
+    return np.maximum(_with_partners(statics, traffic, result), 1e-9)
+
+
+def _with_partners(statics: Statics, traffic: Traffic, hazard: FloatArray) -> FloatArray:
+    """Return the hazard when another begins in the same slot as the interferer now and then."""
+    hostile = statics.hostile
+    together = traffic.same_slot[hostile.station[:, None], hostile.partner] * hostile.partner_kill
+    kill = -np.expm1(-hazard / 2.0) + together.sum(axis=1)
+    return np.asarray(-2.0 * np.log1p(-np.minimum(kill, LARGEST_KILL)))
 
 
 def group_sums(statics: Statics, values: FloatArray) -> FloatArray:

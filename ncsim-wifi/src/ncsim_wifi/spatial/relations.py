@@ -80,6 +80,9 @@ class Hostile:
         group: Number of the group of each relation.
         by_cts_only: Whether only the CTS that answer the station reach the receiver.
         locks: Whether the receiver locks on frames of the station.
+        partner: Weaker stations that the station senses, and may begin with in the same slot,
+            shape (relations, near).
+        partner_kill: Extra part of frames lost, half overlapped, if it does.
     """
 
     link: IntArray
@@ -92,6 +95,8 @@ class Hostile:
     group: IntArray
     by_cts_only: BoolArray
     locks: BoolArray
+    partner: IntArray
+    partner_kill: FloatArray
 
     def __len__(self) -> int:
         return len(self.link)
@@ -144,6 +149,7 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     sets = _subsets(settings.approximations.helper_count)
     delta, omega = _increments(scene, near, helper, sets)
     worst = np.where(omega > 0.0, delta, 0.0).max(axis=2)
+    partner, partner_kill = _partners(scene, near)
     kept = somebody & (is_strong | (-np.expm1(-worst) >= settings.approximations.min_kill))
     kept &= scene.is_alive[:, None]
     if not settings.terms.hidden_loss:
@@ -163,6 +169,8 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
         group,
         by_cts_only[link, place],
         locks[link, place],
+        partner[link, place],
+        partner_kill[link, place],
     )
 
 
@@ -215,6 +223,24 @@ def _increments(
     delta[..., 0] = after[..., 0] - before[..., 0]
     omega = np.where(clashes | lacks, 0.0, np.exp(-SURVIVAL_DISCOUNT * before))
     return np.maximum(delta, 0.0), omega
+
+
+def _partners(scene: Scene, near: Near) -> tuple[IntArray, FloatArray]:
+    """Return who may collide with each interferer, and what both together add to its harm."""
+    links = np.arange(len(scene.links))[:, None, None]
+    size = near.station.shape[1]
+    weaker = np.arange(size)[None, :] > np.arange(size)[:, None]
+    there = (near.station != NOBODY)[:, :, None] & (near.station != NOBODY)[:, None, :] & weaker
+    there &= scene.senses[near.station[:, :, None], near.station[:, None, :]]
+    if not scene.settings.terms.joint_interference:
+        there[:] = False
+    alone_mW = near.power_mW[:, :, None] + near.noise_mW[:, None, None]
+    both_mW = alone_mW + near.power_mW[:, None, :]
+    scheme = scene.scheme[links]
+    alone, both = (hazard(scheme, scene.ratio_dB(mW, links)) for mW in (alone_mW, both_mW))
+    added = np.exp(-alone / 2.0) - np.exp(-both / 2.0)
+    station = np.broadcast_to(near.station[:, None, :], there.shape)
+    return np.where(there, station, NOBODY), np.where(there, added, 0.0)
 
 
 def _grouped(

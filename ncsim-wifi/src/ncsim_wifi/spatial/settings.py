@@ -17,6 +17,7 @@ class Terms:
         energy_sensing: Stations too weak to be sensed alone are sensed together.
         far_noise: Interferers beyond the nearest raise the noise.
         dead_below_threshold: Simulator artefact: links below the preamble threshold get nothing.
+        lost_signal_field: Simulator artefact: who loses a signalling field finds the channel idle.
     """
 
     same_slot_collisions: bool = True
@@ -28,6 +29,7 @@ class Terms:
     energy_sensing: bool = True
     far_noise: bool = True
     dead_below_threshold: bool = False
+    lost_signal_field: bool = False
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.acks import ack_survival
+from ncsim_wifi.spatial.acks import ack_survival, heard_answers
+from ncsim_wifi.spatial.artefacts import Senders, field_survival
 from ncsim_wifi.spatial.attempts import Attempts, Exchange, attempts_of
 from ncsim_wifi.spatial.backoff import (
     MEAN_COUNTS,
@@ -75,6 +76,7 @@ class FixedPoint:
         self._attempts = 1.0 / scene.link_of_station.sum(axis=1)[scene.station]
         self._loss = np.zeros(links)
         self._answered = np.ones(links)
+        self._heard = np.ones(links)
         self._silenced = np.zeros(stations)
         self._activity = np.ones(stations)
         self._packets = np.ones(links)
@@ -154,6 +156,7 @@ class FixedPoint:
         cycle_us = base_us[:, None] + MEAN_COUNTS * count_us[:, None]
         return Traffic(
             occupancy.on,
+            attempts.same_slot,
             tau,
             rate_per_us,
             self._stages,
@@ -170,7 +173,7 @@ class FixedPoint:
         base = base_success(
             self._scene, statics.noise_hazard, attempts.same_slot, statics.same_slot_loss
         )
-        base = base * self._aware(traffic)
+        base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
             hidden = hidden_loss(self._scene, statics, traffic, gates)
@@ -192,6 +195,17 @@ class FixedPoint:
             success = np.repeat(base[:, None], STAGES, axis=1)
         self._visit(success)
 
+    def _fields_survival(self, traffic: Traffic, attempts: Attempts) -> FloatArray:
+        """Return what stations that lost a signalling field leave of frames (an artefact)."""
+        fields = self._statics.fields
+        if fields is None:
+            return np.ones(len(self._scene.links))
+        count = mean_count(self._stages)
+        senders = Senders(
+            traffic.rate_per_us, attempts.rate_per_us, traffic.times.on_air_us, count, self._clear
+        )
+        return field_survival(self._scene, fields, senders)
+
     def _aware(self, traffic: Traffic) -> FloatArray:
         """Return what stations that missed an RTS leave of frames, theirs and others'."""
         scene, unread = self._scene, self._statics.unread
@@ -212,7 +226,7 @@ class FixedPoint:
         if not scene.settings.rts_cts:
             return
         gain = scene.settings.approximations.gain
-        by_stage, _ = self._success(np.ones(len(scene.links)), hidden, hidden.answered)
+        by_stage, _ = self._success(self._heard, hidden, hidden.answered)
         fresh = (self._link_stages * by_stage).sum(axis=1)
         self._answered = gain * fresh + (1.0 - gain) * self._answered
         after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
@@ -278,18 +292,23 @@ class FixedPoint:
     def _ack_survival(self, traffic: Traffic, hidden: HiddenLoss | None) -> FloatArray:
         """Return what acknowledgements of hidden links leave of frames (MODEL 3.9)."""
         scene, acks, hostile = self._scene, self._statics.acks, self._statics.hostile
-        if not len(acks.link):
-            return np.ones(len(scene.links))
         spared = np.ones((len(scene.links), scene.station_count))
         if hidden is not None:
             kill = np.where(
                 hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill
             )
             spared[hostile.link, hostile.station] = 1.0 - kill
+        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
+        own = scene.link_of_station * (self._attempts * self._answered)
+        sending = sending * (1.0 - own @ self._statics.silenced).T  # a CTS stops the sender too
+        heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
+        self._heard = heard
+        if not len(acks.link):
+            return heard
         sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
         if scene.settings.rts_cts:
             sent = sent * 2.0  # each data frame is answered by a CTS before and an ACK after
         window_us = scene.protected_us[acks.link] + scene.ack_us[acks.other]
         kill = acks.kill * spared[acks.link, scene.station[acks.other]]
         logs = np.log(np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill)))
-        return np.exp(np.bincount(acks.link, logs, minlength=len(scene.links)))
+        return heard * np.exp(np.bincount(acks.link, logs, minlength=len(scene.links)))

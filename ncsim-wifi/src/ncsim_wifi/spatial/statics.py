@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
-from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations
+from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations, deaf_to_ack
+from ncsim_wifi.spatial.artefacts import LostFields, lost_fields
 from ncsim_wifi.spatial.collisions import same_slot_loss
 from ncsim_wifi.spatial.energy import EnergySets, GateMasks, energy_sets, gate_masks
 from ncsim_wifi.spatial.handshake import (
@@ -43,11 +44,14 @@ class Statics:
         by_cts_missed: How often neither meets the other at all.
         silenced: Whose CTS silence whom, shape (links, stations).
         unread: Who may begin unawares, under RTS/CTS.
+        fields: Who may lose a signalling field, if that counts.
         stops_at_cts: Whether the sender defers from the interferer's CTS on.
         noise_hazard: h_noise of each link.
         same_slot_loss: sync[l, w].
         ack_hazard: h_ack[l, k].
         acks: Who suffers from whose acknowledgements.
+        deaf_to_ack: Part of its own acknowledgements that a sender loses to stations that it does
+            not sense, while they send, shape (links, stations).
         energy: Who is silenced by summed power.
         before: Subsets for the gates at the sender.
         during: Subsets for the gates at the interferer.
@@ -62,11 +66,13 @@ class Statics:
     by_cts_missed: FloatArray
     silenced: FloatArray
     unread: Unread | None
+    fields: LostFields | None
     stops_at_cts: BoolArray
     noise_hazard: FloatArray
     same_slot_loss: FloatArray
     ack_hazard: FloatArray
     acks: AckRelations
+    deaf_to_ack: FloatArray
     energy: EnergySets
     before: GateMasks
     during: GateMasks
@@ -92,11 +98,13 @@ def statics_of(scene: Scene) -> Statics:
         unmet(np.full_like(fatal, SLOTS_MET)),
         silenced_share(scene),
         unread_of(scene, RTS_RATIO_dB) if scene.settings.rts_cts else None,
+        lost_fields(scene, near.noise_mW),
         _hears_cts_of(scene, own, hostile.station),
         _added_noise_hazard(scene, near.noise_mW),
         same_slot_loss(scene, near.noise_mW),
         hazards,
         ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
+        deaf_to_ack(scene),
         energy,
         gate_masks(scene, energy, hostile, before=True),
         gate_masks(scene, energy, hostile, before=False),
