@@ -57,7 +57,7 @@ class Approximations:
     near_count: int = 8
     helper_count: int = 4
     energy_count: int = 6
-    min_kill: float = 0.08
+    min_kill: float = 0.06
     max_sets: int = 1500
     iterations: int = 8
     stage_gain: float = 0.8

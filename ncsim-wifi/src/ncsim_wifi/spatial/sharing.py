@@ -46,9 +46,15 @@ class Sharing:
         for number, route in enumerate(routes):
             for link in route:
                 self._on_link.setdefault(link, []).append(number)
-        self._at_station: dict[int, list[int]] = {}
+        at_station: dict[int, list[int]] = {}
         for link in self._on_link:
-            self._at_station.setdefault(station[link], []).append(link)
+            at_station.setdefault(station[link], []).append(link)
+        self._shared = [
+            (link, links)
+            for links in at_station.values()
+            for link in links
+            if len(links) > 1 or len(self._on_link[link]) > 1
+        ]
 
     def divide(self, able: Mapping[int, float]) -> list[tuple[float, int]]:
         """Return the rate of each transfer, and the link that decides it.
@@ -56,13 +62,21 @@ class Sharing:
         Args:
             able: What each link would deliver if its station served no other.
         """
-        offers = [dict.fromkeys(route, math.inf) for route in self._routes]
-        for _ in range(ROUNDS):
-            demands = [{link: _least_elsewhere(each, link) for link in each} for each in offers]
-            for links in self._at_station.values():
-                for link in links:
-                    share = self._share_of(link, links, able, demands)
-                    self._offer(link, share, demands, offers)
+        offers = [{link: able[link] for link in route} for route in self._routes]
+        for link, _ in self._shared:
+            for number in self._on_link[link]:
+                offers[number][link] = math.inf
+        for _ in range(ROUNDS if self._shared else 0):
+            before = [dict(each) for each in offers]
+            demands = {
+                link: {n: _least_elsewhere(before[n], link) for n in self._on_link[link]}
+                for link, _ in self._shared
+            }
+            for link, links in self._shared:
+                share = self._share_of(link, links, able, demands)
+                self._offer(link, share, demands[link], offers)
+            if offers == before:
+                break
         return [min((value, link) for link, value in each.items()) for each in offers]
 
     def _share_of(
@@ -70,14 +84,14 @@ class Sharing:
         link: int,
         links: Sequence[int],
         able: Mapping[int, float],
-        demands: Sequence[Mapping[int, float]],
+        demands: Mapping[int, Mapping[int, float]],
     ) -> float:
         """Return what a station could give one of its links, the others having their demands."""
-        if not able[link]:
-            return 0.0
+        if len(links) == 1 or not able[link]:
+            return able[link]
         usable = [each for each in links if able[each]]
         asked = [
-            math.inf if each == link else sum(demands[n][each] for n in self._on_link[each])
+            math.inf if each == link else sum(demands[each].values())
             for each in usable
         ]
         shares = water_fill(asked, 1.0, [1.0 / able[each] for each in usable])
@@ -87,13 +101,16 @@ class Sharing:
         self,
         link: int,
         share: float,
-        demands: Sequence[Mapping[int, float]],
+        demands: Mapping[int, float],
         offers: Sequence[dict[int, float]],
     ) -> None:
         """Write down what each transfer on a link could take of its share."""
         numbers = self._on_link[link]
+        if len(numbers) == 1:
+            offers[numbers[0]][link] = share
+            return
         for number in numbers:
-            asked = [math.inf if each == number else demands[each][link] for each in numbers]
+            asked = [math.inf if each == number else demands[each] for each in numbers]
             parts = water_fill(asked, share, [1.0] * len(numbers))
             offers[number][link] = parts[numbers.index(number)]
 
