@@ -22,6 +22,7 @@ PARTS = (
     packet.overlapping_domains,
     packet.overhead,
     packet.starts_and_stops,
+    packet.spatial,
 )
 
 

@@ -18,7 +18,7 @@ from ncsim_wifi.spatial.occupancy import connected_components
 from ncsim_wifi.spatial.plant import Plant
 from ncsim_wifi.spatial.settings import Settings, Terms
 from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
-from ncsim_wifi.spatial.transfers import Paths, RouteAlone
+from ncsim_wifi.spatial.transfers import Paths
 
 MAX_SOLVED_SETS = 4096
 RATE_TOLERANCE = 1e-9
@@ -209,7 +209,6 @@ class CsmaSpatialRoutesModel(CsmaSpatialModel):
         network = context.network
         self._paths = Paths(self._plant, self._place.tolist(), network.bandwidth_MBps)
         self._answers = ModelCache(MAX_SOLVED_SETS)
-        self._alone = ModelCache(MAX_SOLVED_SETS)
 
     @override
     def route_rates(self, routes: Sequence[Route]) -> RouteRates:
@@ -238,15 +237,7 @@ class CsmaSpatialRoutesModel(CsmaSpatialModel):
         """Return rate and decisive link of transfers that influence each other."""
         if all(len(route) == 1 for route in routes):
             return self._saturated(routes)
-        alone = {route: self._route_alone(route) for route in dict.fromkeys(routes)}
-        if len(routes) == 1:
-            return {route: (each.rate_MBps, each.decisive) for route, each in alone.items()}
-        coupled = dict(zip(routes, self._paths.coupled(routes), strict=True))
-        answer = {}
-        for route, (rate_MBps, decisive) in coupled.items():
-            ratio = rate_MBps / alone[route].coupled_MBps if alone[route].coupled_MBps else 0.0
-            answer[route] = (alone[route].rate_MBps * min(1.0, ratio), decisive)
-        return self._within_bandwidth(routes, answer)
+        return self._paths.rates(routes)
 
     def _saturated(self, routes: tuple[Route, ...]) -> dict[Route, tuple[float, LinkIndex]]:
         """Return rates of transfers of one hop each: what their links get, shared equally."""
@@ -258,24 +249,4 @@ class CsmaSpatialRoutesModel(CsmaSpatialModel):
                 link,
             )
             for link, factor in zip(links, factors, strict=True)
-        }
-
-    def _route_alone(self, route: Route) -> RouteAlone:
-        return self._alone.get_or_build(route, lambda: self._paths.route_alone(route))
-
-    def _within_bandwidth(
-        self, routes: tuple[Route, ...], answer: dict[Route, tuple[float, LinkIndex]]
-    ) -> dict[Route, tuple[float, LinkIndex]]:
-        """Return rates scaled down where two rules together would overload a link."""
-        load_MBps: dict[LinkIndex, float] = {}
-        for route in routes:
-            for link in route:
-                load_MBps[link] = load_MBps.get(link, 0.0) + answer[route][0]
-        room = {
-            link: self._paths.bandwidth_MBps[link] / total_MBps if total_MBps else 1.0
-            for link, total_MBps in load_MBps.items()
-        }
-        return {
-            route: (rate_MBps * min(1.0, *(room[link] for link in route)), decisive)
-            for route, (rate_MBps, decisive) in answer.items()
         }

@@ -90,10 +90,7 @@ class Sharing:
         if len(links) == 1 or not able[link]:
             return able[link]
         usable = [each for each in links if able[each]]
-        asked = [
-            math.inf if each == link else sum(demands[each].values())
-            for each in usable
-        ]
+        asked = [math.inf if each == link else sum(demands[each].values()) for each in usable]
         shares = water_fill(asked, 1.0, [1.0 / able[each] for each in usable])
         return shares[usable.index(link)]
 

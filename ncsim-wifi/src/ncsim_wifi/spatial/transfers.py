@@ -9,8 +9,8 @@ transfers of one hop each, which are saturated.
 Source: MODEL 5; docs/decisions/0002-route-rates.md.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -50,14 +50,21 @@ class Paths:
         plant: Those on the radio.
         place: The place of each link in the plant, -1 for wired ones.
         bandwidth_MBps: Clean bandwidth of each link.
+        known: What is known of routes.
     """
 
     plant: Plant
     place: Sequence[int]
     bandwidth_MBps: Sequence[float]
+    known: dict[Route, RouteAlone] = field(default_factory=dict, compare=False)
 
     def route_alone(self, route: Route) -> RouteAlone:
-        """Return what a transfer gets that has the network for itself."""
+        """Return what a transfer gets that has the network for itself, worked out once."""
+        if route not in self.known:
+            self.known[route] = self._route_alone(route)
+        return self.known[route]
+
+    def _route_alone(self, route: Route) -> RouteAlone:
         limits = [(self.bandwidth_MBps[link], at) for at, link in enumerate(route)]
         on_air = [at for at, link in enumerate(route) if self.place[link] >= 0]
         if min(limits)[0] > 0.0:
@@ -69,6 +76,39 @@ class Paths:
         rate_MBps, at = min(limits)
         ((coupled_MBps, _),) = self.coupled([route])
         return RouteAlone(rate_MBps, route[at], coupled_MBps)
+
+    def rates(self, routes: Sequence[Route]) -> dict[Route, tuple[float, LinkIndex]]:
+        """Return rate and decisive link of each of several transfers that influence each other.
+
+        Args:
+            routes: Sorted; one that occurs twice stands for two transfers.
+        """
+        alone = {route: self.route_alone(route) for route in dict.fromkeys(routes)}
+        if len(routes) == 1:
+            return {route: (each.rate_MBps, each.decisive) for route, each in alone.items()}
+        coupled = dict(zip(routes, self.coupled(routes), strict=True))
+        answer = {}
+        for route, (rate_MBps, decisive) in coupled.items():
+            ratio = rate_MBps / alone[route].coupled_MBps if alone[route].coupled_MBps else 0.0
+            answer[route] = (alone[route].rate_MBps * min(1.0, ratio), decisive)
+        return self._within_bandwidth(routes, answer)
+
+    def _within_bandwidth(
+        self, routes: Sequence[Route], answer: Mapping[Route, tuple[float, LinkIndex]]
+    ) -> dict[Route, tuple[float, LinkIndex]]:
+        """Return rates scaled down where two rules together would overload a link."""
+        load_MBps: dict[LinkIndex, float] = {}
+        for route in routes:
+            for link in route:
+                load_MBps[link] = load_MBps.get(link, 0.0) + answer[route][0]
+        room = {
+            link: self.bandwidth_MBps[link] / total_MBps if total_MBps else 1.0
+            for link, total_MBps in load_MBps.items()
+        }
+        return {
+            route: (rate_MBps * min(1.0, *(room[link] for link in route)), decisive)
+            for route, (rate_MBps, decisive) in answer.items()
+        }
 
     def coupled(self, routes: Sequence[Route]) -> list[tuple[float, LinkIndex]]:
         """Return rates and decisive links in the coupled model.

@@ -8,6 +8,7 @@ from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import rate_table
 from ncsim_wifi.radio import Radio
+from ncsim_wifi.validation import spatial_packets
 from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, RateLog, measure
 from ncsim_wifi.validation.rows import Row, half_a_digit, read_data
 from ncsim_wifi.validation.scenes import Flow, parallel
@@ -27,6 +28,7 @@ def rows() -> Iterator[Row]:
     yield from overlapping_domains()
     yield from overhead()
     yield from starts_and_stops()
+    yield from spatial()
 
 
 def relative_errors(
@@ -98,6 +100,11 @@ def overlapping_domains() -> Iterator[Row]:
         case = f"link {printed['link']}"
         yield _stated(name, case, "MB/s, all active", printed["ncsim_MBps"], rate_MBps, 3)
         yield from _against_median(name, case, "MB/s, all active", printed, rate_MBps)
+
+
+def spatial() -> Iterator[Row]:
+    """Yield what ``csma_spatial`` makes of structured and random scenes, link by link."""
+    yield from spatial_packets.rows()
 
 
 def overhead() -> Iterator[Row]:
