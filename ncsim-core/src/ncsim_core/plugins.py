@@ -23,7 +23,6 @@ A plug-in loads if its major is equal and its minor not above. A minor only adds
 """
 
 PLUGIN_GROUP: Final = "ncsim.plugins"
-COMMAND_GROUP: Final = "ncsim.commands"
 RUN_FIGURE_GROUP: Final = "ncsim.run_figures"
 """Entry points by kind of figure: functions of a ``RunTrace`` and the path of a picture."""
 

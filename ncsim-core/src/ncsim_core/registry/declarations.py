@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import pluggy
-from packaging.requirements import InvalidRequirement, Requirement
 
 from ncsim_core.errors import PluginError
 from ncsim_core.plugins import KINDS, NAME_PATTERN, PLUGIN_API, Component, Section
 from ncsim_core.registry.option_schemas import read_schema
-from ncsim_core.registry.records import RegisteredComponent, RegisteredSection
+from ncsim_core.registry.records import (
+    RegisteredComponent,
+    RegisteredSection,
+    requirement_form_fault,
+)
 from ncsim_core.registry.well_known import provider
 
 RESERVED_SECTIONS = frozenset(kind.config_key for kind in KINDS.values()) | {"seed"}
@@ -119,10 +122,9 @@ def _checked_component(component: Component, owner: Owner) -> RegisteredComponen
             f'{label}: factory is {component.factory!r}; write it as "package.module:callable"'
         )
     for text in component.requires:
-        try:
-            Requirement(text)
-        except InvalidRequirement as error:
-            raise PluginError(f"{label}: requires has {text!r}: {error}") from error
+        fault = requirement_form_fault(text)
+        if fault is not None:
+            raise PluginError(f"{label}: requires has {text!r}: {fault}")
     try:
         schema = read_schema(component.options)
     except PluginError as error:

@@ -7,14 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias
 
-from packaging.requirements import Requirement
-
 from ncsim_core.plugins import Component, Section
 
 PluginStatus: TypeAlias = Literal["ok", "disabled", "failed", "incompatible"]
 
 OptionsSchema: TypeAlias = Mapping[str, object]
 """A JSON Schema (draft-07) of one object, within the portable subset."""
+
+_PLAIN_REQUIREMENT = re.compile(
+    r"[A-Za-z][A-Za-z0-9-]*[A-Za-z0-9](?:(?:[<>]=?|[!=]=)[0-9]+(?:\.[0-9]+)*)?"
+)
+"""Such as ``anrg-saga>=2.1``: certainly valid, so that packaging need not be imported to say so."""
 
 
 @dataclass(frozen=True)
@@ -100,8 +103,23 @@ def normalised(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
+def requirement_form_fault(text: str) -> str | None:
+    """Return why a text is no requirement, or ``None``; plain ones cost no import."""
+    if _PLAIN_REQUIREMENT.fullmatch(text):
+        return None
+    from packaging.requirements import InvalidRequirement, Requirement
+
+    try:
+        Requirement(text)
+    except InvalidRequirement as error:
+        return str(error)
+    return None
+
+
 def requirement_fault(text: str) -> str | None:
     """Return how a requirement such as ``anrg-saga>=2.1`` is unmet, from metadata alone."""
+    from packaging.requirements import Requirement
+
     requirement = Requirement(text)
     if requirement.marker is not None and not requirement.marker.evaluate():
         return None
