@@ -5,7 +5,8 @@ from itertools import pairwise
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ncsim_core.cli.main import app, exit_code_of
+from ncsim_core.cli.main import exit_code_of
+from ncsim_core.cli.verbs import app
 from ncsim_core.errors import ScenarioError
 from ncsim_core.trace.loading import load_run
 from ncsim_viz.figures import dag, gantt, rates, topology

@@ -4,7 +4,8 @@ import gzip
 import json
 
 import pytest
-from ncsim_core.cli.main import app, exit_code_of
+from ncsim_core.cli.main import exit_code_of
+from ncsim_core.cli.verbs import app
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.embedding import TRACE_TYPE, compressed_trace, data_element
 from ncsim_core.trace.records import TraceHeader
