@@ -44,7 +44,8 @@ def write(folder: str, seconds: float, per_second: int) -> None:
         for number in range(int(seconds * per_second)):
             if number % 100 == 0:
                 time.sleep(max(0.0, started_s + number / per_second - time.monotonic()))
-            writer.task_ready(now_us(), number, 0)  # type: ignore[arg-type] # plain numbers do
+            put = writer.task_ready if number % 2 else writer.task_ended
+            put(now_us(), number, 0)  # type: ignore[arg-type] # plain numbers do
         simulation.run()
 
 
@@ -95,7 +96,7 @@ class Page:
         elif raw.startswith(b"data: "):
             self.lines.append(raw[6:])
         elif raw == b"\n" and self.lines:
-            match = re.match(rb'{"t":(\d+),"k":"ready"', self.lines[-1])
+            match = re.match(rb'{"t":(\d+),"k":"(?:ready|end)"', self.lines[-1])
             if match and int(match[1]) >= FIRST_us:
                 self.lags_s.append((now_us() - int(match[1])) / 1e6)
 

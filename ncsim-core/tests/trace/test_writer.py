@@ -164,10 +164,10 @@ def test_a_live_trace_can_be_followed_under_its_name(tmp_path, monkeypatch):
     path = tmp_path / "t.jsonl"
     with TraceWriter(path, is_live=True) as writer:
         simulation = worked_example(writer)
-        for _ in range(5):
+        for _ in range(8):
             simulation.step()
 
-        assert '"k":"start"' in path.read_text()
+        assert '"k":"end"' in path.read_text()
 
 
 def test_the_header_of_a_live_trace_is_there_at_once(tmp_path):

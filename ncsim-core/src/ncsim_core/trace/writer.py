@@ -89,11 +89,11 @@ class TraceWriter(Observer):
         self._level = level
         self._sink = TextSink(target, is_live=is_live)
         self._is_live = is_live
-        self._flushed_at_s = -math.inf
+        self._due_s = -math.inf
         self._float_text = _FloatTexts().__getitem__
         self._route_text = _RouteTexts().__getitem__
         self._lines: list[str] = []
-        self._append = self._put if is_live else self._lines.append
+        self._append = self._lines.append
         self._counts = dict.fromkeys(RECORDS, 0)
         self._setup: Setup | None = None
 
@@ -135,7 +135,7 @@ class TraceWriter(Observer):
     def task_ended(self, at_us: Instant, task: int, node: NodeIndex) -> None:
         self._counts["end"] += 1
         self._append(f'{{"t":{at_us},"k":"end","i":{task},"n":{node}}}\n')
-        self._flush_if_full()
+        self._flush_if_due()
 
     @override
     def transfer_started(
@@ -174,7 +174,7 @@ class TraceWriter(Observer):
     def transfer_ended(self, at_us: Instant, transfer: int) -> None:
         self._counts["xend"] += 1
         self._append(f'{{"t":{at_us},"k":"xend","x":{transfer}}}\n')
-        self._flush_if_full()
+        self._flush_if_due()
 
     def note(self, at_us: Instant, namespace: str, data: object) -> None:
         """Put something of a plug-in on record, under the plug-in's name."""
@@ -200,18 +200,21 @@ class TraceWriter(Observer):
 
     def _put(self, line: str) -> None:
         self._lines.append(line)
-        is_due = self._is_live and time.monotonic() - self._flushed_at_s >= LIVE_FLUSH_s
-        if is_due or len(line) >= LONG_LINE_CHARACTERS:
+        if len(line) >= LONG_LINE_CHARACTERS:
             self._flush()
+        else:
+            self._flush_if_due()
 
-    def _flush_if_full(self) -> None:
-        if len(self._lines) >= BUFFER_LINES:
+    def _flush_if_due(self) -> None:
+        """Write what waits if it is much or somebody follows; called when something has ended."""
+        is_full = len(self._lines) >= BUFFER_LINES
+        if is_full or (self._is_live and time.monotonic() >= self._due_s):
             self._flush()
 
     def _flush(self) -> None:
         self._sink.write("".join(self._lines))
         self._lines.clear()
-        self._flushed_at_s = time.monotonic()
+        self._due_s = time.monotonic() + LIVE_FLUSH_s
 
 
 def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dict[str, object]:
