@@ -183,11 +183,10 @@ def test_options_of_a_third_party_plugin_appear_with_no_change_to_the_page(
     )
     (tmp_path / "served").mkdir()
     command = [Path(sys.executable).with_name("ncsim"), "view", "--serve", "served", "--no-browser"]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.PIPE, text=True,
-        env=os.environ | {"PYTHONPATH": str(site), "PYTHONUNBUFFERED": "1"},
-    )  # fmt: skip
-    try:
+    environment = os.environ | {"PYTHONPATH": str(site), "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, env=environment
+    ) as process:
         assert process.stdout is not None
         page = open_page(process.stdout.readline().strip() + "#v=configure")
         page.get_by_label("scheduler", exact=True).select_option("lookahead", timeout=20_000)
@@ -196,6 +195,4 @@ def test_options_of_a_third_party_plugin_appear_with_no_change_to_the_page(
         until(page, "document.querySelector('#yaml').value.includes('hop_weight: 2.5')")
 
         assert "What each hop after the first adds" in page.locator(".options").inner_text()
-    finally:
         process.terminate()
-        process.wait(20)

@@ -4,7 +4,7 @@ import type { Run } from "../data/run";
 import { number, seconds } from "../draw/format";
 import type { Selection } from "../state";
 import { causeOf, exists, nameOf } from "../views/names";
-import type { Context } from "../views/view";
+import type { Cell, Context } from "../views/view";
 
 type Fact = [string, string];
 
@@ -82,9 +82,11 @@ function factsOf(ctx: Context, { kind, id }: Selection): Fact[] {
   }
 }
 
+const shown = (cell: Cell | undefined): string => (typeof cell === "number" ? number(cell, 8) : String(cell ?? "–"));
+
 function rowFacts(ctx: Context, id: number): Fact[] {
   const runs = ctx.extras.study?.runs;
-  return (runs?.columns ?? []).map((name, i): Fact => [name, String(runs?.rows[id]?.[i] ?? "–")]).filter(([, value]) => value !== "–");
+  return (runs?.columns ?? []).map((name, i): Fact => [name, shown(runs?.rows[id]?.[i])]).filter(([, value]) => value !== "–");
 }
 
 const nodeName = (run: Run, node: number): string => run.nodes[node]?.id ?? "–";

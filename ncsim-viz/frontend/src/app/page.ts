@@ -19,6 +19,18 @@ export const isDark = (ui: Ui): boolean =>
 
 const LEAST_WINDOW_us = 10;
 
+/** First event at which most transfers are in service: where a map has something to show. */
+export function busiest(run: Run): number {
+  let [now, most, at] = [0, 0, run.events - 1];
+  for (let event = 0; event < run.events; event++) {
+    const kind = run.evKind.data[event];
+    if (kind === K.xstart) now += 1;
+    if (kind === K.xend) now -= 1;
+    if (kind === K.recalc && now > most) [most, at] = [now, event];
+  }
+  return at;
+}
+
 export class Page {
   cursor: Cursor;
   /** Grows whenever the run does. */
@@ -46,7 +58,8 @@ export class Page {
     this.cursor = new Cursor(source.run);
     this.changed();
     const { event, selection, dag } = this.store.ui;
-    const at = Math.min(event < 0 ? source.run.events - 1 : event, source.run.events - 1);
+    const start = event >= 0 ? event : source.run.isLive ? source.run.events - 1 : busiest(source.run);
+    const at = Math.min(start, source.run.events - 1);
     this.store.set({
       event: at, time: at < 0 ? 0 : source.run.evTime.data[at], dag: dag < source.run.dags.length ? dag : 0,
       selection: selection && exists(source.run, selection, source.extras.study?.runs.rows.length) ? selection : null,

@@ -2,11 +2,14 @@
 
 import { csvOf } from "../draw/format";
 import { CanvasPainter, SvgPainter, type Painter } from "../draw/painter";
-import { boxOf, type Context, type View } from "../views/view";
+import { boxOf, type Box, type Context, type View } from "../views/view";
 
 const WIDTH = 1200;
+const NOTE = 30;
 const HEIGHT = 700;
 const MAX_SIDE = 16000;
+/** Longer drawings are cut there, and say so. */
+const MAX_HEIGHT = 12000;
 
 export function save(name: string, type: string, data: BlobPart): void {
   const link = document.createElement("a");
@@ -16,35 +19,47 @@ export function save(name: string, type: string, data: BlobPart): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-function sizeOf(view: View, ctx: Context): [number, number] {
-  return [WIDTH, Math.ceil(view.height?.(ctx, WIDTH, HEIGHT) ?? HEIGHT)];
+interface Sheet { box: Box; height: number; note: string }
+
+/** The whole drawing; of a very long one the beginning, with a note. */
+function sheetSize(view: View, ctx: Context): Sheet {
+  const whole = Math.ceil(view.height?.(ctx, WIDTH, HEIGHT) ?? HEIGHT);
+  if (whole <= MAX_HEIGHT) return { box: boxOf(WIDTH, whole), height: whole, note: "" };
+  const share = Math.floor((100 * MAX_HEIGHT) / whole);
+  return {
+    box: { width: WIDTH, height: whole, top: 0, bottom: MAX_HEIGHT }, height: MAX_HEIGHT + NOTE,
+    note: `The first ${share} % of this drawing; narrow the window of time to have less in it.`,
+  };
 }
 
-function paint(view: View, ctx: Context, painter: Painter, width: number, height: number): void {
-  view.draw?.(painter, ctx, boxOf(width, height));
-  view.overlay?.(painter, ctx, boxOf(width, height));
+function paint(view: View, ctx: Context, painter: Painter, { box, note }: Sheet): void {
+  painter.clip(0, 0, box.width, box.bottom, () => {
+    view.draw?.(painter, ctx, box);
+    view.overlay?.(painter, ctx, box);
+  });
+  if (note) painter.text(8, box.bottom + NOTE / 2, note, { fill: ctx.colours.ink, size: 13, bold: true });
 }
 
 /** A view as an SVG document: the whole drawing, not the part on screen. */
 export function svgOf(view: View, ctx: Context): string {
-  const [width, height] = sizeOf(view, ctx);
+  const sheet = sheetSize(view, ctx);
   const painter = new SvgPainter();
-  paint(view, ctx, painter, width, height);
-  return painter.document(width, height, ctx.colours.paper, view.summary(ctx));
+  paint(view, ctx, painter, sheet);
+  return painter.document(WIDTH, sheet.height, ctx.colours.paper, view.summary(ctx));
 }
 
 /** A view as a canvas at twice the resolution, less where that would be too large. */
 export function sheetOf(view: View, ctx: Context): HTMLCanvasElement {
-  const [width, height] = sizeOf(view, ctx);
-  const ratio = Math.min(2, MAX_SIDE / height);
+  const size = sheetSize(view, ctx);
+  const ratio = Math.min(2, MAX_SIDE / size.height);
   const sheet = document.createElement("canvas");
-  sheet.width = width * ratio;
-  sheet.height = height * ratio;
+  sheet.width = WIDTH * ratio;
+  sheet.height = size.height * ratio;
   const pen = sheet.getContext("2d") as CanvasRenderingContext2D;
   pen.scale(ratio, ratio);
   pen.fillStyle = ctx.colours.paper;
-  pen.fillRect(0, 0, width, height);
-  paint(view, ctx, new CanvasPainter(pen), width, height);
+  pen.fillRect(0, 0, WIDTH, size.height);
+  paint(view, ctx, new CanvasPainter(pen), size);
   return sheet;
 }
 

@@ -6,7 +6,7 @@ import { JobList } from "../server/runs";
 import type { Service } from "../server/service";
 import { Field } from "./form";
 import { Presets } from "./presets";
-import { propertiesOf, resolved, withValue } from "./schema";
+import { pointerOf, propertiesOf, resolved, shapeOf, withValue } from "./schema";
 import type { Path } from "./table";
 
 const PAUSE_ms = 350;
@@ -78,6 +78,7 @@ function Editor({ service, offer }: { service: Service; offer: Offer }) {
       <section class="form" aria-label="Form" tabIndex={0}>
         {offer.catalogue.broken.map((each) => <p class="fault" key={each.distribution}>{each.distribution} could not be loaded: {each.detail}</p>)}
         <Presets service={service} generators={offer.catalogue.generators} schema={offer.schema} document={scenario.document} put={scenario.fromDocument} />
+        <Jumps schema={offer.schema} />
         {scenario.document === null && <p role="status">{scenario.check ? "The text is no mapping: mend the YAML first." : "loading …"}</p>}
         {scenario.document !== null && propertiesOf(offer.schema, offer.schema).filter(([name]) => !name.startsWith("$")).map(([name, each]) => (
           <Field key={name} name={name} schema={resolved(each, offer.schema)} root={offer.schema} value={scenario.document?.[name]} path={[name]} faults={faults} required change={change} />
@@ -92,6 +93,17 @@ function Editor({ service, offer }: { service: Service; offer: Offer }) {
         <JobList service={service} />
       </section>
     </div>
+  );
+}
+
+/** The way to every part of the form, as the schema has them. */
+function Jumps({ schema }: { schema: Schema }) {
+  const parts = propertiesOf(schema, schema).flatMap(([name, each]) => propertiesOf(each, schema)
+    .filter(([, part]) => ["object", "table", "list"].includes(shapeOf(part, schema))).map(([part]) => [name, part]));
+  return (
+    <nav aria-label="Parts of the form" class="jumps">Go to {parts.map(([name, part]) => (
+      <button key={part} onClick={() => focusOn(pointerOf([name, part]))}>{part}</button>
+    ))}</nav>
   );
 }
 

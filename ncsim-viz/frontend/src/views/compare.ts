@@ -37,6 +37,7 @@ export function pairsOf(first: Run, second: Run): Pair[] {
       found.push({ kind, label: kind === "task" ? `task ${first.taskName(i)}` : first.transferName(i), first: i, second: match });
     }
     for (const i of other.values()) {
+      if (kind === "transfer" && second.isLocal(i)) continue;
       found.push({ kind, label: kind === "task" ? `task ${second.taskName(i)}` : second.transferName(i), first: -1, second: i });
     }
   }

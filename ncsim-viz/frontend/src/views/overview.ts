@@ -15,7 +15,7 @@ function factsOf({ run, extras }: Context): Fact[] {
     ["makespan", run.done?.makespan != null ? `${seconds(run.done.makespan)} s` : "–"],
     ["critical path alone", metrics?.critical_path_s != null ? `${number(metrics.critical_path_s, 6)} s` : "–"],
     ["tasks ended", metrics ? `${metrics.tasks.ended} of ${metrics.tasks.total}` : String(run.tasks)],
-    ["sent between nodes", metrics ? `${number(metrics.remote_MB)} MB` : "–"],
+    ["payload between nodes", metrics ? `${number(metrics.remote_MB)} MB` : "–"],
     ["MB × hops", metrics ? number(metrics.route_work_MB_hops) : "–"],
     ["mean slowdown", metrics?.mean_transfer_slowdown != null ? `× ${number(metrics.mean_transfer_slowdown)}` : "–"],
     ["worst slowdown", metrics?.max_transfer_slowdown != null ? `× ${number(metrics.max_transfer_slowdown)}` : "–"],

@@ -19,6 +19,7 @@ export function shownTransfers(ctx: Context): number[] {
   const { run, window } = ctx;
   return ctx.memo("shown transfers", [ctx.ui.window], () => {
     const found: number[] = [];
+    if (!run.recalcs) return found;
     for (let x = 0; x < run.transfers; x++) {
       const from = run.servedFrom(x);
       if (!Number.isNaN(from) && from <= window[1] && !(run.servedTo(x) < window[0])) found.push(x);

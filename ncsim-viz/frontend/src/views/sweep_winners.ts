@@ -60,7 +60,7 @@ function paintRow(p: Painter, ctx: Context, study: Study, row: number, y: number
     const share = Math.min(1, Math.log2(Math.max(1, ratio)) / 2);
     const marks = `${has(cells.get("solo_winners"), policy) ? "☆" : ""}${has(cells.get("full_winners"), policy) ? "★" : ""}`;
     p.rect(x + 1, y + 1, wide - 2, WINNER_ROW - 2, { fill: magnitude(1 - share), stroke: marks ? colours.ink : undefined, width: 2 });
-    const text = wide > 52 ? `${marks} ${number(ratio, 3)}` : marks || (wide > 30 ? number(ratio, 2) : "");
+    const text = wide > 52 ? `${marks} ${ratio.toFixed(2)}` : marks || (wide > 30 ? ratio.toFixed(1) : "");
     p.text(x + wide / 2, y + 12, text, { fill: onMagnitude(1 - share), size: 11, anchor: "middle", bold: marks !== "" });
   });
   const inverted = cells.get("inversion") === true || cells.get("inversion") === 1;
