@@ -18,6 +18,12 @@ from ncsim_core.scenario.faults import (
     original_path,
     path_text,
 )
+from ncsim_core.scenario.json_reader import (
+    RepeatedKeyError,
+    json_positions,
+    json_slips,
+    read_json,
+)
 from ncsim_core.scenario.positions import Positions, Slip, Span
 from ncsim_core.scenario.yaml_reader import read_yaml
 
@@ -41,7 +47,11 @@ class Source:
 
     @cached_property
     def _lines(self) -> list[str]:
-        return self.text.splitlines()
+        return self.text.split("\n") if self.may_be_json() else self.text.splitlines()
+
+    def may_be_json(self) -> bool:
+        """Return whether the text is to be read as JSON first."""
+        return self.is_json or self.text.lstrip().startswith("{")
 
     def lone_fault(self, message: str, span: Span | None = None) -> ScenarioFaults:
         """Return the error for a source with one fault that leaves nothing to check."""
@@ -95,17 +105,14 @@ def read_document(source: Source) -> tuple[Any, list[Slip]]:
     _refuse_unprintable(source)
     if not source.text.strip():
         raise source.lone_fault("is empty; a scenario begins with 'scenario:'", Span(1, 1))
-    if source.is_json or source.text.lstrip().startswith("{"):
-        quick = _quick_json(source)
-        if quick is not None:
-            return quick, []
-    reading = read_yaml(source.text)
-    if reading.document is None and not reading.slips:
+    read = _read_as_json(source) if source.may_be_json() else None
+    document, slips = read if read is not None else read_yaml(source.text)[:2]
+    if document is None and not slips:
         raise source.lone_fault("is empty; a scenario begins with 'scenario:'", Span(1, 1))
-    if not isinstance(reading.document, dict):
-        slips = reading.slips or [_not_a_mapping(reading.document)]
+    if not isinstance(document, dict):
+        slips = slips or [_not_a_mapping(document)]
         raise ScenarioFaults([_slip_fault(source, slip) for slip in slips])
-    return reading.document, reading.slips
+    return document, slips
 
 
 @dataclass(frozen=True)
@@ -136,7 +143,7 @@ def located(
     problems: Iterable[Problem], slips: Iterable[Slip], source: Source, origins: Origins
 ) -> ScenarioFaults:
     """Return the error that reports all problems, in the order of the text."""
-    positions = read_yaml(source.text, with_positions=True).positions
+    positions = _positions(source)
     faults = [_slip_fault(source, slip) for slip in slips]
     told = {slip.path for slip in slips}
     faults += [
@@ -206,30 +213,31 @@ def _refuse_unprintable(source: Source) -> None:
         raise source.lone_fault(message, _end_of(source.text[: found.start()]))
 
 
-class _RepeatedKeyError(Exception):
-    """A JSON object has a key twice."""
-
-
-def _quick_json(source: Source) -> dict[str, Any] | None:
-    """Return the object in a JSON text, or ``None`` if the YAML reader should look at it.
+def _read_as_json(source: Source) -> tuple[Any, list[Slip]] | None:
+    """Return what a JSON text says, or ``None`` if the YAML reader should look at it.
 
     Raises:
         ScenarioFaults: It has to be JSON and is not.
     """
     try:
-        data = json.loads(source.text, object_pairs_hook=_object_without_repeats)
+        return read_json(source.text), []
     except json.JSONDecodeError as error:
         if not source.is_json:
             return None
         span = Span(error.lineno, error.colno)
         raise source.lone_fault(f"not valid JSON: {error.msg}", span) from None
-    except (_RepeatedKeyError, RecursionError, ValueError):
+    except RepeatedKeyError:
+        return json.loads(source.text), json_slips(source.text)
+    except RecursionError:
         return None
-    return data if isinstance(data, dict) else None
 
 
-def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        raise _RepeatedKeyError
-    return data
+def _positions(source: Source) -> Positions:
+    """Return where everything stands, by the reader that has read the text."""
+    if not source.may_be_json():
+        return read_yaml(source.text, with_positions=True).positions
+    try:
+        json.loads(source.text)
+    except (ValueError, RecursionError):
+        return read_yaml(source.text, with_positions=True).positions
+    return json_positions(source.text)
