@@ -8,6 +8,7 @@ from ncsim_core.network import Network, Position
 from ncsim_core.testing.builders import line, link, make_context, network_of
 from ncsim_wifi import conflict
 from ncsim_wifi.conflict import relations
+from ncsim_wifi.propagation import propagation
 from ncsim_wifi.radio import Radio
 from ncsim_wifi.validation import fluid
 from ncsim_wifi.validation.scenes import Scene, parallel
@@ -69,6 +70,18 @@ def test_interferers_below_the_cutoff_are_left_out():
 
     assert relations_of(network).affected(0).tolist() == []
     assert relations_of(network, interference_cutoff_dBm=-120.0).affected(0).tolist() == [1]
+
+
+def test_an_interferer_exactly_at_the_cutoff_counts():
+    network = parallel(2, 450.0).network()
+    power_dBm = propagation(make_context(network), Radio()).power_dBm
+    at_receiver_dBm = float(power_dBm[network.sources[0], network.targets[1]])
+    just_above_dBm = float(np.nextafter(at_receiver_dBm, 0.0))
+
+    assert relations_of(network, interference_cutoff_dBm=at_receiver_dBm).affected(0).tolist() == [
+        1
+    ]
+    assert relations_of(network, interference_cutoff_dBm=just_above_dBm).affected(0).tolist() == []
 
 
 def test_wired_links_are_related_to_nobody():

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MAX_CACHED_RESULTS = 64
-_MISSING = object()
+MAX_CACHED_PAIRS = 500_000_000  # of links; some results hold ten bytes and more for each pair
 
 
 class ModelCache:
@@ -22,20 +22,44 @@ class ModelCache:
 
     The least recently used entry goes first. A cached value must never be changed. Threads may
     share a cache: at worst they build the same value twice.
+
+    Args:
+        max_entries: How many values are kept.
+        max_weight: How much they may weigh together; the latest is kept whatever it weighs.
     """
 
-    def __init__(self, max_entries: int = MAX_CACHED_RESULTS) -> None:
-        self._entries: dict[Hashable, object] = {}
+    def __init__(
+        self, max_entries: int = MAX_CACHED_RESULTS, max_weight: int = MAX_CACHED_PAIRS
+    ) -> None:
+        self._entries: dict[Hashable, tuple[object, int]] = {}
         self._max_entries = max_entries
+        self._max_weight = max_weight
 
-    def get_or_build(self, key: Hashable, build: Callable[[], T]) -> T:
-        """Return the value kept under ``key``, building it the first time."""
-        known = self._entries.pop(key, _MISSING)
-        value = build() if known is _MISSING else cast("T", known)
-        self._entries[key] = value
-        if len(self._entries) > self._max_entries:
-            self._entries.pop(list(self._entries)[0], None)  # noqa: RUF015 - one step, for threads
+    def get_or_build(self, key: Hashable, build: Callable[[], T], weight: int = 0) -> T:
+        """Return the value kept under ``key``, building it the first time.
+
+        Args:
+            key: What the value depends on.
+            build: What makes it.
+            weight: How much of ``max_weight`` it takes.
+        """
+        known = self._entries.pop(key, None)
+        value = build() if known is None else cast("T", known[0])
+        self._entries[key] = (value, weight)
+        self._make_room(is_weighed=weight > 0)
         return value
+
+    def _make_room(self, *, is_weighed: bool) -> None:
+        """Drop entries that have long not been used; in steps that threads cannot disturb."""
+        excess = len(self._entries) - self._max_entries
+        weight = sum(each for _, each in list(self._entries.values())) if is_weighed else 0
+        if excess <= 0 and weight <= self._max_weight:
+            return
+        for key in list(self._entries)[:-1]:
+            if excess <= 0 and weight <= self._max_weight:
+                return
+            _, dropped = self._entries.pop(key, (None, 0))
+            excess, weight = excess - 1, weight - dropped
 
 
 SHARED_CACHE = ModelCache()
@@ -68,7 +92,8 @@ class BuildContext:
 
         The key must hold everything but the network that the value depends on.
         """
-        return self.cache.get_or_build((self.network.topology, key), build)
+        pairs = len(self.network.links) ** 2
+        return self.cache.get_or_build((self.network.topology, key), build, pairs)
 
     def rng(self, stream: str) -> "np.random.Generator":
         """Return a generator for a named stream; streams do not disturb each other."""
