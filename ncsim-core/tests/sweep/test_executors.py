@@ -9,6 +9,7 @@ import yaml
 from ncsim_core.cli.main import main
 from ncsim_core.cli.progress import Pace
 from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep import dispatch
 from ncsim_core.sweep.executors import executor_factory
 from ncsim_core.sweep.running import run_sweep
 from ncsim_core.sweep.store import Store
@@ -38,6 +39,26 @@ ASKED = []
 def threads(request):
     ASKED.append(request)
     return ThreadPoolExecutor(request.workers)
+"""
+DESERTED = """
+from concurrent.futures import Executor, Future
+
+
+class Deserted(Executor):
+    \"\"\"Does one chunk, then nobody is left.\"\"\"
+
+    def __init__(self, request):
+        self._is_left = True
+
+    def submit(self, fn, /, *args, **more):
+        future = Future()
+        if self._is_left:
+            future.set_result(fn(*args, **more))
+        self._is_left = False
+        return future
+
+    def trouble(self):
+        return None if self._is_left else "all have left"
 """
 
 
@@ -142,6 +163,22 @@ def test_a_limit_that_was_raised_is_tried_again_on_request(tmp_path):
     assert done(3) == {"limit_reached"}
     assert done(10_000) == {"limit_reached"}
     assert done(10_000, retry_failed=True) == {"completed"}
+
+
+def test_an_executor_that_has_nobody_left_ends_the_sweep_and_what_was_done_is_kept(
+    fake_dist, path, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(dispatch, "LOOK_EVERY_s", 0.01)
+    folder = fake_dist("my-pool", {"my_pool": DESERTED}, entry_points={})
+    info = folder / "my_pool-1.0.dist-info" / "entry_points.txt"
+    info.write_text("[ncsim.executors]\ndeserted = my_pool:Deserted\n")
+    code, _, err = ncsim("sweep", path, "-o", tmp_path / "study", "--executor", "deserted")
+
+    assert code == 1
+    assert "all have left; what is done is kept, run the same command again" in err
+    assert ncsim("sweep", "status", tmp_path / "study")[1] == (
+        "parts: 14 runs, 4 completed, 10 to do\n"
+    )
 
 
 def test_the_pace_forgets_results_that_were_there_already():

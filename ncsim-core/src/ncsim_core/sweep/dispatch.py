@@ -24,6 +24,7 @@ FIRST_CHUNK: Final = 4
 MAX_CHUNK: Final = 256
 CHUNKS_PER_WORKER: Final = 2
 START_s: Final = 120.0
+LOOK_EVERY_s: Final = 5.0
 STRIKES: Final = 2
 """Workers that a run may take with it."""
 
@@ -54,16 +55,25 @@ class Dispatcher:
         """Yield the results of all items, chunk by chunk, in the order in which they come.
 
         Raises:
-            NcsimError: Workers do not start.
+            NcsimError: Workers do not start, or none is left.
         """
         try:
             while self._fill(items) or self._suspects:
-                done, _ = wait(self._in_flight, return_when=FIRST_COMPLETED)
+                done, _ = wait(self._in_flight, LOOK_EVERY_s, FIRST_COMPLETED)
+                if not done:
+                    self._look_after_executor()
                 for future in done:
                     if future in self._in_flight:
                         yield from self._collected(future)
         finally:
             self._executor.shutdown(wait=False, cancel_futures=True)
+
+    def _look_after_executor(self) -> None:
+        """Ask an executor that can tell whether anybody is left to work."""
+        ask: Callable[[], str | None] = getattr(self._executor, "trouble", lambda: None)
+        trouble = ask()
+        if trouble is not None:
+            raise NcsimError(f"{trouble}; what is done is kept, run the same command again")
 
     def _fill(self, items: Iterator[Item]) -> bool:
         """Submit until enough is in flight; return whether anything is."""
@@ -102,7 +112,7 @@ class Dispatcher:
 
     def _accused(self, chunk: list[Item], error: Exception) -> Iterator[list[ResultRow]]:
         was_alone = len(chunk) == 1 and not self._in_flight
-        if was_alone and self._is_guilty(chunk[0]):
+        if was_alone and self._is_guilty(chunk[0], error):
             yield [self._blamed(chunk[0], error)]
         else:
             self._suspects.extend(chunk)
@@ -115,12 +125,13 @@ class Dispatcher:
                 self._suspects.extend(left)
             self._replace_executor()
 
-    def _is_guilty(self, item: Item) -> bool:
+    def _is_guilty(self, item: Item, error: Exception) -> bool:
         """Count one more death of a run that was alone; return whether it is to blame for it."""
         self._strikes[item.key] += 1
         wall_s = self._limits.wall_s
-        spent_s = time.monotonic() - self._submitted_s
-        return self._strikes[item.key] >= STRIKES or (wall_s is not None and spent_s >= wall_s)
+        has_hung = wall_s is not None and time.monotonic() - self._submitted_s >= wall_s
+        was_tried_again = not isinstance(error, BrokenExecutor)  # clusters do so by themselves
+        return has_hung or was_tried_again or self._strikes[item.key] >= STRIKES
 
     def _blamed(self, item: Item, error: Exception) -> ResultRow:
         wall_s = self._limits.wall_s

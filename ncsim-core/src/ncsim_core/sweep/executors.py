@@ -7,6 +7,7 @@ function from an ``ExecutorRequest`` to an executor.
 import importlib
 import multiprocessing
 import os
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from typing_extensions import override
 from ncsim_core.errors import ScenarioError
 from ncsim_core.sweep.worker import prepare_worker
 
+ALONE_s: Final = 60.0
 EXECUTOR_GROUP: Final = "ncsim.executors"
 
 
@@ -70,8 +72,21 @@ class DaskExecutor(Executor):
             self._client = distributed.Client(address, timeout=10)
         except OSError as error:
             raise ScenarioError(f"no Dask scheduler answers at {address}: {error}") from error
+        self._address = address
         self._inner = self._client.get_executor(pure=False)
         self.workers = max(1, sum(self._client.nthreads().values()))
+        self._alone_since_s: float | None = None
+
+    def trouble(self) -> str | None:
+        """Return that the cluster has had no worker for a minute; asked now and then."""
+        if self._client.nthreads():
+            self._alone_since_s = None
+            return None
+        now_s = time.monotonic()
+        self._alone_since_s = self._alone_since_s or now_s
+        if now_s - self._alone_since_s < ALONE_s:
+            return None
+        return f"the Dask cluster at {self._address} has had no worker for {ALONE_s:.0f} s"
 
     @override
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
