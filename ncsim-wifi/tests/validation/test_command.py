@@ -19,6 +19,25 @@ def test_a_stage_prints_its_rows_and_counts_them():
     assert "28 comparisons: 28 pass" in result.output
 
 
+def test_details_are_left_out_unless_asked_for_or_wrong(monkeypatch):
+    common = ("literature", "study", "scene", "MB/s")
+    rows = [
+        Row(*common, 1.0, "ns-3", 2.0, None),
+        Row(*common, 3.0, "ns-3", 4.0, None, is_detail=True),
+        Row(*common, 5.0, "ns-3", 6.0, 0.1, is_detail=True),
+    ]
+    monkeypatch.setattr(literature, "rows", lambda: rows)
+
+    short, long = (
+        RUNNER.invoke(app, ["--stage", "literature", *flags]).output
+        for flags in ([], ["--details"])
+    )
+
+    assert [short.count("study"), short.count("scene"), long.count("scene")] == [1, 2, 3]
+    assert "3 comparisons: 1 FAIL, 2 differs; --details shows 1 more" in short
+    assert "more" not in long
+
+
 def test_a_stage_that_is_named_twice_runs_once():
     result = RUNNER.invoke(app, ["--stage", "literature", "--stage", "literature"])
 

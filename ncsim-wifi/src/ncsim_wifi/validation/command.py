@@ -1,6 +1,7 @@
 """``ncsim validate-model``: does the radio model still do what the paper says?"""
 
 import json
+from collections import Counter
 from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
@@ -9,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from ncsim_wifi.validation.rows import Row
+    from ncsim_wifi.validation.rows import Row, Verdict
 
 EXIT_FAILED = 2
+VERDICTS: "tuple[Verdict, ...]" = ("pass", "FAIL", "differs")
 ABOUT_DIFFERENCES = (
-    "differs: packets do something else than the model. The rows from the paper check that the\n"
-    "model errs as the paper says; docs/wifi-model.md says what that means for using it."
+    "differs: packets do something else than the model. Rows from the paper check that the model\n"
+    "errs as the paper says; docs/wifi-model.md says what that means for using it."
 )
 
 app = typer.Typer(rich_markup_mode=None, add_completion=False, pretty_exceptions_enable=False)
@@ -36,6 +38,9 @@ def validate_model(
     as_json: Annotated[  # noqa: FBT002 - typer declares flags this way
         bool, typer.Option("--json", help="Print rows as JSON.")
     ] = False,
+    details: Annotated[  # noqa: FBT002 - typer declares flags this way
+        bool, typer.Option("--details", help="Print every link of the large packet studies, too.")
+    ] = False,
     plots: Annotated[
         Path | None, typer.Option(help="Write the figures into this folder (needs matplotlib).")
     ] = None,
@@ -53,7 +58,7 @@ def validate_model(
     if as_json:
         typer.echo(json.dumps([row.to_dict() for row in rows], indent=2))
     else:
-        _print_tables(chosen, rows)
+        _print_tables(chosen, rows, has_details=details)
     if plots is not None:
         _write_figures(plots)
     if any(row.verdict == "FAIL" for row in rows):
@@ -73,21 +78,29 @@ def rows_of(stage: StageName) -> "Iterable[Row]":
             return packet.rows()
 
 
-def _print_tables(stages: "Iterable[StageName]", rows: "list[Row]") -> None:
+def _print_tables(stages: "Iterable[StageName]", rows: "list[Row]", *, has_details: bool) -> None:
     from ncsim_wifi.validation.rows import table_text
 
     for number, stage in enumerate(stages):
         of_stage = [row for row in rows if row.stage == stage]
+        shown = [row for row in of_stage if has_details or not _is_left_out(row)]
         typer.echo(("\n" if number else "") + f"== {stage} ==")
-        typer.echo(table_text(of_stage))
-        counts = {
-            verdict: sum(row.verdict == verdict for row in of_stage)
-            for verdict in ("pass", "FAIL", "differs")
-        }
-        told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
-        typer.echo(f"{len(of_stage)} comparisons: {told}")
-        if counts["differs"]:
-            typer.echo(ABOUT_DIFFERENCES)
+        typer.echo(table_text(shown))
+        typer.echo(_summary(of_stage, len(of_stage) - len(shown)))
+
+
+def _is_left_out(row: "Row") -> bool:
+    """Return whether a row is told with ``--details`` only; none that fails is."""
+    return row.is_detail and row.verdict != "FAIL"
+
+
+def _summary(rows: "list[Row]", left_out: int) -> str:
+    """Return how many comparisons a stage has and what they came to."""
+    counts = Counter(row.verdict for row in rows)
+    told = ", ".join(f"{counts[each]} {each}" for each in VERDICTS if counts[each])
+    more = f"; --details shows {left_out} more" if left_out else ""
+    about = "\n" + ABOUT_DIFFERENCES if counts["differs"] else ""
+    return f"{len(rows)} comparisons: {told}{more}{about}"
 
 
 def _write_figures(folder: Path) -> None:

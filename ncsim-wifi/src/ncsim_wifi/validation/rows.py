@@ -33,6 +33,7 @@ class Row:
             is shown, not judged, for the model has errors, and what the paper states about
             them is judged in rows of its own.
         relation: Whether ``measured`` should be as expected, or at most that.
+        is_detail: Whether a table for people leaves it out, unless it fails.
     """
 
     stage: Stage
@@ -44,6 +45,7 @@ class Row:
     measured: float
     tolerance: float | None
     relation: Relation = "="
+    is_detail: bool = False
 
     @property
     def error(self) -> float:

@@ -74,7 +74,7 @@ def rows() -> Iterator[Row]:
 def _told(row: PacketRow) -> Row:
     name, quantity = f"csma_spatial, {row.family}", f"MB/s of {row.link}"
     numbers = row.expected_MBps, "ns-3", row.predicted_MBps
-    return Row("packet", name, row.case, quantity, *numbers, None)
+    return Row("packet", name, row.case, quantity, *numbers, None, is_detail=True)
 
 
 def _judged(family: str, kind: str, accepted: float, measured: float) -> Row:
