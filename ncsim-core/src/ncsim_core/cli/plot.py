@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from ncsim_core.cli.studies import runs_of
 from ncsim_core.errors import ScenarioError
 
 
@@ -51,8 +52,7 @@ def plot(  # noqa: PLR0913 - one parameter per option
     Example: ncsim plot out/ --kind gantt -o gantt.pdf
     """
     from ncsim_core.sweep.figures import draw_means, draw_regret, draw_slowdown
-    from ncsim_core.sweep.store import STORE_NAME, Store
-    from ncsim_core.sweep.table import table_of
+    from ncsim_core.sweep.store import STORE_NAME
 
     if kind is not None or (study.exists() and not (study / STORE_NAME).exists()):
         from ncsim_core.cli.run_figures import draw_run
@@ -60,8 +60,7 @@ def plot(  # noqa: PLR0913 - one parameter per option
         draw_run(str(study), kind, output)
         typer.echo(f"wrote {output}", err=True)
         return
-    with Store(study, must_exist=True) as store:
-        runs = table_of(store)
+    runs = runs_of(study)
     chosen = figure or (FigureKind.REGRET if along is None else FigureKind.MEANS)
     if chosen is FigureKind.REGRET:
         draw_regret(runs, policy, mode, output)

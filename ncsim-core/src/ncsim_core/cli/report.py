@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ncsim_core.cli.studies import runs_of
 from ncsim_core.cli.tables import aligned
 from ncsim_core.errors import ScenarioError
 
@@ -72,11 +73,8 @@ def report(  # noqa: PLR0913 - one parameter per option
     Example: ncsim report study/ --table cases --format latex
     """
     from ncsim_core.sweep.report import paired, policies, policy_cases, policy_totals, summary
-    from ncsim_core.sweep.store import Store
-    from ncsim_core.sweep.table import table_of
 
-    with Store(study, must_exist=True) as store:
-        runs = table_of(store)
+    runs = runs_of(study)
     match show:
         case ReportTable.RUNS:
             table = runs

@@ -46,6 +46,9 @@ def sweep(  # noqa: PLR0913 - one parameter per option
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Do runs again that failed or hit a limit.")
     ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Check the file and say how many runs it makes.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Status as JSON.")] = False,
 ) -> None:
@@ -63,6 +66,9 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         return
     if verb == "merge" and len(rest) > 1:
         _merge(Path(rest[0]), [Path(each) for each in rest[1:]], as_json=as_json)
+        return
+    if dry_run and not rest:
+        _foresee(verb)
         return
     if rest or output is None:
         raise ScenarioError("give one sweep file and -o STUDY, or 'status STUDY', or 'merge ...'")
@@ -113,6 +119,19 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     if not (first.isdigit() and count.isdigit()):
         raise ScenarioError(f"--shard {text!r}: expected I/N, e.g. --shard 1/4")
     return int(first), int(count)
+
+
+def _foresee(file: str) -> None:
+    """Say what a sweep file would do."""
+    from ncsim_core.sweep.reading import load_sweep
+
+    plan = load_sweep(file)
+    typer.echo(f"{plan.name}: {sum(1 for _ in plan.runs())} runs")
+    for axis in plan.axes:
+        typer.echo(f"  {len(axis.levels):5d} x {', '.join(axis.paths)}")
+    typer.echo(f"  {len(plan.seeds):5d} x seed")
+    for text in plan.where:
+        typer.echo(f"  where {text}")
 
 
 def _status(study: Path, *, as_json: bool) -> None:
