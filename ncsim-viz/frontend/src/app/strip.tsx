@@ -3,6 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { activityOf, type Activity } from "../draw/activity";
 import { seconds } from "../draw/format";
+import { FONT } from "../draw/painter";
 import type { Context } from "../views/view";
 import { penOf, useSize } from "./drawing";
 import type { Page } from "./page";
@@ -14,7 +15,7 @@ function area(pen: CanvasRenderingContext2D, values: Float64Array, most: number,
   pen.beginPath();
   pen.moveTo(0, HEIGHT);
   values.forEach((value, i) => {
-    const y = HEIGHT - (value / most) * (HEIGHT - 6);
+    const y = HEIGHT - (value / most) * (HEIGHT - 15);
     pen.lineTo((i / values.length) * width, y);
     pen.lineTo(((i + 1) / values.length) * width, y);
   });
@@ -36,6 +37,10 @@ function draw(pen: CanvasRenderingContext2D, ctx: Context, activity: Activity, w
   pen.strokeStyle = colours.ink;
   pen.lineWidth = 1;
   pen.stroke();
+  pen.font = `10px ${FONT}`;
+  pen.textBaseline = "top";
+  pen.fillStyle = colours.muted;
+  pen.fillText("transfers in service (area), running tasks (line); drag: window of all views", 8, 3);
   const x = (time: number): number => (time / Math.max(1, run.end)) * width;
   if (ui.window) {
     pen.fillStyle = colours.paper;

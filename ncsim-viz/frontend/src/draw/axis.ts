@@ -11,6 +11,9 @@ export const xOf = (s: Scale, time: number): number =>
 export const timeOf = (s: Scale, x: number): number =>
   s.from + ((x - s.left) / (s.right - s.left || 1)) * (s.to - s.from);
 
+/** Beside the playhead's time, labels of ticks are covered: half of one is worse than none. */
+const HIDDEN_px = 34;
+
 /** The playhead: a line, and its time in the axis. */
 export function playhead(p: Painter, s: Scale, time: number, top: number, bottom: number, colours: Palette): void {
   const x = xOf(s, time);
@@ -19,6 +22,7 @@ export function playhead(p: Painter, s: Scale, time: number, top: number, bottom
   const text = `${seconds(time, (s.to - s.from) / 10)} s`;
   const width = widthOf(text, 11, true) + 8;
   const left = Math.max(s.left, Math.min(s.right - width, x - width / 2));
+  p.rect(left - HIDDEN_px, top + 1, width + 2 * HIDDEN_px, 17, { fill: colours.paper });
   p.rect(left, top + 1, width, 17, { fill: colours.select });
   p.text(left + width / 2, top + 10, text, { fill: colours.paper, size: 11, anchor: "middle", bold: true });
 }

@@ -43,7 +43,7 @@ const finishText = (ctx: Context, step: number): string => {
 interface Columns { name: number; bars: number; wide: number; rates: number; finish: number; why: number }
 function columnsOf(box: Box): Columns {
   const left = sideOf(box) + 16;
-  const wide = Math.max(60, box.width - left - 560);
+  const wide = Math.max(60, box.width - left - 600);
   return { name: left, bars: left + 120, wide, rates: left + 138 + wide, finish: left + 262 + wide, why: left + 350 + wide };
 }
 

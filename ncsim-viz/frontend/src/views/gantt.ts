@@ -3,14 +3,15 @@
 import { playhead, timeAxis, timeOf, xOf, type Scale } from "../draw/axis";
 import { count, number, seconds } from "../draw/format";
 import { MANY, type Lane, type Lanes } from "../draw/lanes";
-import { fitted, hatch, type Painter } from "../draw/painter";
+import { fitted, hatch, widthOf, type Painter } from "../draw/painter";
 import { rasterImage, type Row } from "../draw/raster";
 import { chainSets, limited, rateAt, type ChainSets } from "./names";
 import type { Box, Context, Table, View } from "./view";
 
 const LEFT = 110;
 const TOP = 24;
-const BELOW = 8;
+const BELOW = 26;
+const TALLEST_px = 44;
 /** Above so many intervals in the window, pixels are drawn instead of shapes. */
 export const PAINTED = 3000;
 
@@ -23,7 +24,7 @@ const lanesOf = (ctx: Context): Lanes => ctx.lanesOf(ctx.ui.lanes);
 function laneHeight(ctx: Context, lanes: Lanes, room: number): number {
   const share = (room - TOP - BELOW) / Math.max(1, lanes.lanes.length);
   const least = ctx.ui.fit ? 1 : lanes.intervals > MANY ? 12 : 20;
-  return Math.max(least, Math.min(ctx.ui.fit ? 20 : 30, share));
+  return Math.max(least, Math.min(ctx.ui.fit ? 20 : TALLEST_px, share));
 }
 
 const scaleOf = (ctx: Context, box: Box): Scale =>
@@ -61,6 +62,31 @@ function draw(p: Painter, ctx: Context, box: Box): void {
     } else rows.forEach((row) => paintRow(p, ctx, lanes, row, s));
     paintTrigger(p, ctx, s, box);
   });
+  legend(p, ctx, box);
+}
+
+/** What bars mean, below the last lane. */
+function legend(p: Painter, ctx: Context, box: Box): void {
+  const { colours } = ctx;
+  const lanes = lanesOf(ctx);
+  const y = TOP + lanes.lanes.length * heightIn(ctx, lanes, box) + BELOW / 2;
+  if (y > box.bottom || !lanes.lanes.length) return;
+  const [blue] = colours.categories;
+  const marks: [string, (x: number) => void][] = [
+    ["task, coloured by DAG", (x) => p.rect(x, y - 6, 22, 12, { fill: blue })],
+    ["waits for its node", (x) => p.line([x, y, x + 22, y], { stroke: colours.muted, dash: [2, 2] })],
+    ["transfer: filled as high as its share of the rate it has alone", (x) => {
+      p.rect(x, y - 6, 22, 12, { fill: blue, alpha: 0.2 });
+      p.rect(x, y + 2, 22, 4, { fill: blue });
+    }],
+  ];
+  if (ctx.ui.chain) marks.push(["binding chain", (x) => p.rect(x, y - 6, 22, 12, { stroke: colours.bind, width: 2, dash: [5, 2] })]);
+  let x = LEFT;
+  for (const [words, mark] of marks) {
+    mark(x);
+    p.text(x + 28, y, words, { fill: colours.muted, size: 11, halo: colours.paper });
+    x += 48 + widthOf(words, 11);
+  }
 }
 
 function ground(p: Painter, ctx: Context, lanes: Lanes, row: Row, box: Box): void {
@@ -79,6 +105,7 @@ function ground(p: Painter, ctx: Context, lanes: Lanes, row: Row, box: Box): voi
 function paintRow(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale): void {
   const [first, last] = lanes.range(row.lane, s.from, s.to);
   const chain = ctx.ui.chain ? chainSets(ctx) : null;
+  if (row.lane.isTasks) for (let i = first; i < last; i++) paintWait(p, ctx, lanes, row, s, i);
   for (let i = first; i < last; i++) paintOne(p, ctx, lanes, row, s, i, chain);
 }
 
@@ -87,7 +114,7 @@ function paintOne(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i:
   const id = lanes.id.data[i];
   const x0 = xOf(s, lanes.start.data[i]);
   const width = Math.max(1, xOf(s, lanes.end.data[i]) - x0);
-  if (row.lane.isTasks) paintTask(p, ctx, lanes, row, s, i, x0, width);
+  if (row.lane.isTasks) paintTask(p, ctx, lanes, row, i, x0, width);
   else paintTransfer(p, ctx, row, s, id, x0, width);
   if (chain && (row.lane.isTasks ? chain.tasks : chain.transfers).has(id)) {
     p.rect(x0 + 1, row.top + 1, Math.max(1, width - 2), row.height - 2, { stroke: colours.bind, width: 2, dash: [5, 2] });
@@ -105,14 +132,19 @@ function paintMarked(p: Painter, ctx: Context, lanes: Lanes, rows: Row[], s: Sca
   }
 }
 
-function paintTask(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i: number, x0: number, width: number): void {
+/** From ready to start, below the bars of other tasks. */
+function paintWait(p: Painter, ctx: Context, lanes: Lanes, row: Row, s: Scale, i: number): void {
+  const ready = ctx.run.readyAt(lanes.id.data[i]);
+  const middle = row.top + row.height / 2;
+  if (ready < lanes.start.data[i]) p.line([xOf(s, ready), middle, xOf(s, lanes.start.data[i]), middle], { stroke: ctx.colours.muted, dash: [2, 2] });
+}
+
+function paintTask(p: Painter, ctx: Context, lanes: Lanes, row: Row, i: number, x0: number, width: number): void {
   const { run, colours } = ctx;
   const id = lanes.id.data[i];
   const category = lanes.category.data[i];
   const shade = category % colours.categories.length;
   const middle = row.top + row.height / 2;
-  const ready = run.readyAt(id);
-  if (ready < lanes.start.data[i]) p.line([xOf(s, ready), middle, x0, middle], { stroke: colours.muted, dash: [2, 2] });
   p.rect(x0, row.top, width, row.height, { fill: colours.categories[shade] });
   if (category >= colours.categories.length) hatch(p, x0, row.top, width, row.height, colours.paper, 6);
   if (width > 3) p.line([x0 + width - 0.5, row.top, x0 + width - 0.5, row.top + row.height], { stroke: colours.paper });

@@ -1,5 +1,7 @@
 /** The run in numbers, all of them Python's. */
 
+import type { ChainItem } from "../data/extras";
+import { timeAxis, xOf } from "../draw/axis";
 import { number, percent, seconds } from "../draw/format";
 import { fitted, hatch, type Painter } from "../draw/painter";
 import type { Box, Context, View } from "./view";
@@ -33,7 +35,8 @@ function draw(p: Painter, ctx: Context, box: Box): void {
     y += 28;
   }
   y = paintChain(p, ctx, box.width, y);
-  paintBusiest(p, ctx, box.width, y);
+  y = paintBusiest(p, ctx, box.width, y);
+  paintItems(p, ctx, box, y);
 }
 
 function paintFacts(p: Painter, ctx: Context, width: number): number {
@@ -79,10 +82,10 @@ function paintChain(p: Painter, ctx: Context, width: number, y: number): number 
 
 const BARS = 14;
 
-function paintBusiest(p: Painter, ctx: Context, width: number, y: number): void {
+function paintBusiest(p: Painter, ctx: Context, width: number, y: number): number {
   const { colours, marks, extras } = ctx;
   const metrics = extras.metrics?.[0];
-  if (!metrics) return;
+  if (!metrics) return y;
   const half = (width - 48) / 2;
   const bars = (left: number, title: string, rows: { id: string; utilisation: number }[], isMarked: (i: number) => boolean): void => {
     const busy = rows.map((row, i) => ({ ...row, i })).filter((row) => row.utilisation > 0).sort((a, b) => b.utilisation - a.utilisation);
@@ -97,11 +100,54 @@ function paintBusiest(p: Painter, ctx: Context, width: number, y: number): void 
   };
   bars(16, "Busiest nodes", metrics.nodes, (i) => marks.nodes.has(i));
   bars(32 + half, "Busiest links", metrics.links, (i) => marks.links.has(i));
+  return y + busiestHeight(ctx);
+}
+
+const busyRows = (rows: { utilisation: number }[] = []): number => Math.min(BARS, rows.filter((row) => row.utilisation > 0).length);
+const busiestHeight = ({ extras }: Context): number =>
+  (extras.metrics?.[0] ? 46 + 22 * Math.max(busyRows(extras.metrics[0].nodes), busyRows(extras.metrics[0].links)) : 0);
+
+const ITEM = 22;
+const ITEMS_LEFT = 190;
+const itemsOf = ({ extras }: Context): ChainItem[] => (extras.explanation?.[0]?.chain ?? []).filter((item) => item.end_us > item.start_us);
+
+/** The binding chain, one row after the other: when each link of it was, and on what it spent its time. */
+function paintItems(p: Painter, ctx: Context, box: Box, y: number): void {
+  const { colours, extras, run, marks } = ctx;
+  const items = itemsOf(ctx);
+  if (!items.length) return;
+  p.text(16, y, "The binding chain, step by step", { fill: colours.ink, size: 14, bold: true });
+  const order = Object.entries(extras.explanation?.[0]?.totals_us ?? {}).filter(([, spent]) => spent > 0).map(([part]) => part);
+  const scale = { from: 0, to: Math.max(1, run.end), left: ITEMS_LEFT, right: box.width - 16 };
+  timeAxis(p, scale, y + 10, y + 32 + items.length * ITEM, colours);
+  items.forEach((item, k) => {
+    const top = y + 34 + k * ITEM;
+    if (top > box.bottom || top + ITEM < box.top) return;
+    const isMarked = (item.kind === "task" ? marks.tasks : marks.transfers).has(item.number);
+    p.text(16, top + 8, fitted(`${item.label} ${item.kind === "task" ? "on" : "over"} ${item.place.join(", ")}`, ITEMS_LEFT - 24, 12), { fill: isMarked ? colours.select : colours.ink, size: 12, bold: isMarked });
+    let at = item.start_us;
+    for (const [part, spent] of Object.entries(item.parts_us).filter(([, us]) => us > 0)) {
+      swatch(p, ctx, xOf(scale, at), top, Math.max(1, xOf(scale, at + spent) - xOf(scale, at)), 15, Math.max(0, order.indexOf(part)));
+      at += spent;
+    }
+  });
+}
+
+/** Where the rows of the chain begin. */
+function itemsTop(ctx: Context, width: number): number {
+  const cards = 14 + Math.ceil(8 / perRow(width)) * CARD.height + 22 + (ctx.run.done?.detail ? 28 : 0);
+  const explanation = ctx.extras.explanation?.[0];
+  const parts = Object.values(explanation?.totals_us ?? {}).filter((spent) => spent > 0).length;
+  return cards + (explanation ? 54 + Math.ceil(parts / (width < 800 ? 2 : 3)) * 20 + 30 : 0) + busiestHeight(ctx);
 }
 
 export const overview: View = {
   id: "overview", title: "Overview", key: "1", draw,
-  height: (_ctx, width) => 530 + Math.ceil(8 / perRow(width)) * CARD.height,
+  height: (ctx, width) => itemsTop(ctx, width) + 44 + itemsOf(ctx).length * ITEM,
+  hit(ctx, box, _x, y) {
+    const item = itemsOf(ctx)[Math.floor((y - itemsTop(ctx, box.width) - 34) / ITEM)];
+    return item && item.kind !== "injection" && item.number >= 0 ? { kind: item.kind, id: item.number } : null;
+  },
   summary: (ctx) => `Run ${ctx.run.status}${ctx.run.done?.makespan != null ? `, makespan ${seconds(ctx.run.done.makespan)} s` : ""}`,
   table: (ctx) => ({
     columns: ["what", "label", "from s", "to s", "spent on"],

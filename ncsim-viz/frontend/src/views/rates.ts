@@ -32,6 +32,7 @@ function draw(p: Painter, ctx: Context, box: Box): void {
   const s = scaleOf(ctx, box);
   const all = shownTransfers(ctx);
   timeAxis(p, s, box.top, box.bottom, ctx.colours);
+  p.text(8, box.top + 9, "▲ start, ● finish: cause", { fill: ctx.colours.muted, size: 10 });
   if (!all.length) p.text(LEFT, TOP + 24, emptyText(ctx), { fill: ctx.colours.muted, size: 13 });
   const first = Math.max(0, Math.floor((box.top - TOP) / ROW));
   const last = Math.min(all.length, Math.ceil((box.bottom - TOP) / ROW));

@@ -43,8 +43,15 @@ function segment(ctx: Context, places: Place[], link: number): Segment {
   return [a.x + ux * gap - uy * 4, a.y + uy * gap + ux * 4, b.x - ux * gap - uy * 4, b.y - uy * gap + ux * 4];
 }
 
-/** A point on the way; past the middle, so that the labels of both directions stand apart. */
-const along = ([x0, y0, x1, y1]: Segment, share: number): [number, number] => [x0 + (x1 - x0) * share, y0 + (y1 - y0) * share];
+/** A label on the outer side of a link, away from that of the other direction. */
+function beside(p: Painter, ctx: Context, [x0, y0, x1, y1]: Segment, words: string, gap: number): void {
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+  const [nx, ny] = [-(y1 - y0) / length, (x1 - x0) / length];
+  const away = gap + 4;
+  const x = (x0 + x1) / 2 + nx * (away + widthOf(words, 10) / 2);
+  const y = (y0 + y1) / 2 + ny * (away + 6);
+  p.text(x, y, words, { fill: ctx.colours.ink, size: 10, anchor: "middle", halo: ctx.colours.paper });
+}
 
 interface Loads { MB: Float64Array; transfers: Int32Array; most: number }
 
@@ -99,8 +106,7 @@ function paintLoads(p: Painter, ctx: Context, places: Place[]): void {
     if (MB[i] <= 0) return;
     const points = segment(ctx, places, i);
     if (Math.hypot(points[2] - points[0], points[3] - points[1]) < LABELLED_px) return;
-    const [x, y] = along(points, 0.62);
-    p.text(x, y, `${number(MB[i], 3)} MB`, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
+    beside(p, ctx, points, `${number(MB[i], 3)} MB`, 6);
   });
 }
 
@@ -128,9 +134,7 @@ function paintRates(p: Painter, ctx: Context, places: Place[]): void {
     p.line(points, { stroke, width: isPaused ? 2 : 2 + 7 * share, dash: isPaused ? [2, 4] : [] });
     arrow(p, points, stroke);
     if (ctx.run.nodes.length > CROWDED || Math.hypot(points[2] - points[0], points[3] - points[1]) < LABELLED_px) continue;
-    const [x, y] = along(points, 0.62);
-    const words = isPaused ? "paused" : `${number(rate, 2)} MB/s${flows > 1 ? ` (${flows})` : ""}`;
-    p.text(x, y, words, { fill: colours.ink, size: 10, anchor: "middle", halo: colours.paper });
+    beside(p, ctx, points, isPaused ? "paused" : `${number(rate, 2)} MB/s${flows > 1 ? ` (${flows})` : ""}`, 2 + 4 * share);
   }
 }
 
