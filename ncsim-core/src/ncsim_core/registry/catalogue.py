@@ -41,6 +41,7 @@ class Registry:
         self._components = tuple(components)
         self._sections = tuple(sections)
         self._manager = manager
+        self._spellings: dict[str, Mapping[str, RegisteredComponent]] = {}
 
     @property
     def plugins(self) -> tuple[PluginRecord, ...]:
@@ -63,9 +64,13 @@ class Registry:
 
     def spellings(self, kind: str) -> Mapping[str, RegisteredComponent]:
         """Return every valid spelling: bare names where unique, ``distribution/name`` for all."""
-        offers = self._offers[kind] if self.components(kind) else {}
-        bare = {name: each[0] for name, each in offers.items() if len(each) == 1}
-        return bare | {each.qualified_name: each for each in self.components(kind)}
+        known = self._spellings.get(kind)
+        if known is None:
+            offers = self._offers[kind] if self.components(kind) else {}
+            bare = {name: each[0] for name, each in offers.items() if len(each) == 1}
+            known = bare | {each.qualified_name: each for each in self.components(kind)}
+            self._spellings[kind] = known
+        return known
 
     def names(self, kind: str) -> tuple[str, ...]:
         """Return the shortest valid spelling of each component, in load order."""

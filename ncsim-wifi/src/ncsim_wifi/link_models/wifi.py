@@ -41,9 +41,10 @@ class WifiLinkModel(LinkModel):
         _check(network)
         context = replace(self._context, network=network)
         clean_Mbps = propagation(context, self._radio).rate_Mbps.tolist()
+        goodput_MBps = {rate: self.goodput_MBps(rate) for rate in dict.fromkeys(clean_Mbps)}
         return LinkRates.of(
             [
-                self.goodput_MBps(rate_Mbps) if is_on_air(link) else link.bandwidth_MBps or 0.0
+                goodput_MBps[rate_Mbps] if is_on_air(link) else link.bandwidth_MBps or 0.0
                 for link, rate_Mbps in zip(network.links, clean_Mbps, strict=True)
             ],
             [link.latency_s for link in network.links],
