@@ -43,6 +43,7 @@ VERBS: Final = {
     "report": Verb("ncsim_core.cli.report:report", "Print a table of a study."),
     "plot": Verb("ncsim_core.cli.plot:plot", "Draw a figure of a study."),
     "trace": Verb("ncsim_core.cli.trace:app", "Show the trace of a run, or verify it."),
+    "import": Verb("ncsim_core.cli.importing:import_workflow", "Read a workflow of WfCommons."),
     "export": Verb("ncsim_core.cli.export:export", "Write a run in another form."),
     "plugins": Verb("ncsim_core.cli.plugins:app", "Look at plug-ins, check them, start one."),
     "schema": Verb("ncsim_core.cli.schema:schema", "Print the JSON Schema of a file format."),

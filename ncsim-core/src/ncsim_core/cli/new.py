@@ -1,11 +1,17 @@
 """``ncsim new``: a small scenario to start from."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
 from ncsim_core.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from ncsim_core.scenario.faults import Fault
+    from ncsim_core.scenario.model import Scenario
 
 STARTER: Final = """\
 scenario:
@@ -36,16 +42,116 @@ scenario:
 """
 
 
-def new(
-    path: Annotated[Path, typer.Argument(help="File to write, e.g. scenario.yaml.")],
-) -> None:
-    """Write a small commented scenario that runs as it is.
+NETWORK: Final = {"type": "paper_grid", "size": 3}
+DAGS: Final = {"type": "paper", "tasks": 5}
+BANDWIDTH_MBps: Final = 5.0
+"""Of generated links where no installed plug-in derives it from positions."""
 
-    Example: ncsim new first.yaml && ncsim run first.yaml
+
+def new(
+    path: Annotated[Path, typer.Argument(help="File to write; .json makes it JSON.")],
+    network: Annotated[
+        str | None, typer.Option(metavar="GENERATOR", help="Make a network, e.g. grid or line.")
+    ] = None,
+    dags: Annotated[
+        str | None,
+        typer.Option(metavar="GENERATOR", help="Make a DAG, e.g. fft or layered_random."),
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            "-s",
+            metavar="KEY=VALUE",
+            help="network.KEY or dags.KEY for the generator, else a key under config.",
+        ),
+    ] = None,
+) -> None:
+    """Write a small commented scenario that runs as it is, or one made by generators.
+
+    Example: ncsim new big.yaml --network grid -s network.rows=4 -s network.columns=5
+    --dags fft -s dags.points=8
     """
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(STARTER.format(name=path.stem))
-    except FileExistsError:
-        raise ScenarioError(f"{path}: exists already; choose another name") from None
+    from ncsim_core.trace.files import json_text, write_atomically
+
+    if path.exists():
+        raise ScenarioError(f"{path}: exists already; choose another name")
+    is_json = path.suffix.lower() == ".json"
+    if network or dags or settings:
+        scenario = _generated(path.stem, network, dags, settings)
+        text = json_text(scenario.to_document()) if is_json else scenario.to_yaml()
+    else:
+        text = STARTER.format(name=path.stem)
+        if is_json:
+            from ncsim_core.scenario.loader import parse_scenario
+
+            text = json_text(parse_scenario(text).to_document())
+    write_atomically(path, text)
     typer.echo(f"{path} written; try: ncsim run {path}")
+
+
+def _generated(
+    name: str, network: str | None, dags: str | None, settings: Sequence[str] | None
+) -> "Scenario":
+    """Return the scenario that generators make, by the rules of a sweep's base."""
+    from ncsim_core.cli.choices import overrides_of
+    from ncsim_core.scenario.faults import ScenarioFaults
+    from ncsim_core.sweep.reading import load_sweep
+    from ncsim_core.sweep.resolving import Resolver
+
+    given = overrides_of(settings)
+    base = {
+        "network": _part("network", network, NETWORK, given),
+        "dags": _part("dags", dags, DAGS, given),
+        "config": _config(given),
+    }
+    _give_bandwidths(base)
+    try:
+        plan = load_sweep({"sweep": {"base": base}})
+    except ScenarioFaults as error:
+        raise ScenarioFaults([_told_here(fault) for fault in error.faults]) from None
+    return replace(Resolver(plan).scenario(next(iter(plan.runs()))), name=name)
+
+
+def _told_here(fault: "Fault") -> "Fault":
+    return replace(fault, origin="ncsim new", path=fault.path.removeprefix("sweep.base."))
+
+
+def _part(
+    part: str, generator: str | None, default: Mapping[str, object], given: Mapping[str, object]
+) -> dict[str, object]:
+    """Return what a generator is asked for."""
+    own = {
+        key.removeprefix(f"{part}."): value
+        for key, value in given.items()
+        if key.startswith(f"{part}.")
+    }
+    start = dict(default) if generator in (None, default["type"]) else {"type": generator}
+    return start | own
+
+
+def _config(given: Mapping[str, object]) -> dict[str, object]:
+    """Return the settings under ``config``, nested as a file would have them."""
+    config: dict[str, Any] = {}
+    for key, value in given.items():
+        *outer, last = key.split(".")
+        if outer[:1] not in (["network"], ["dags"]):
+            inner = config
+            for step in outer:
+                inner = inner.setdefault(step, {})
+            inner[last] = value
+    return config
+
+
+def _give_bandwidths(base: dict[str, dict[str, object]]) -> None:
+    """Let the radio decide the links' rates if there is one, and route over several hops."""
+    from ncsim_core.registry import get_registry
+
+    registry, config = get_registry(), base["config"]
+    if "minimum_hop" in registry.spellings("routing_model"):
+        config.setdefault("routing", "minimum_hop")
+    has_bandwidth = "bandwidth_MBps" in base["network"]
+    if "csma_bianchi" in registry.spellings("interference_model") and not has_bandwidth:
+        config.setdefault("interference", "csma_bianchi")
+        config.setdefault("link_model", "wifi")
+    base["network"].setdefault("bandwidth_MBps", None if "link_model" in config else BANDWIDTH_MBps)

@@ -1,0 +1,58 @@
+"""``ncsim new``: whatever it writes loads and runs."""
+
+import pytest
+from ncsim_core.cli.main import main
+from ncsim_core.scenario.loader import load_scenario
+
+
+def ncsim(*args):
+    with pytest.raises(SystemExit) as stop:
+        main([str(each) for each in args])
+    return stop.value.code
+
+
+@pytest.mark.parametrize("name", ["first.yaml", "first.json"])
+def test_the_starter_runs_as_it_is(name, tmp_path):
+    path = tmp_path / name
+
+    assert ncsim("new", path) == 0
+    assert load_scenario(path).name == "first"
+    assert ncsim("run", path) == 0
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["--network", "grid", "-s", "network.rows=2", "-s", "network.columns=3"],
+        ["--dags", "fft", "-s", "dags.points=4", "-s", "dags.compute_cost=10"],
+        ["-s", "network.bandwidth_MBps=3", "-s", "interference=none", "-s", "seed=7"],
+    ],
+    ids=["network", "dags", "config"],
+)
+def test_what_generators_make_runs(args, tmp_path):
+    path = tmp_path / "made.yaml"
+
+    assert ncsim("new", path, *args) == 0
+    assert load_scenario(path).name == "made"
+    assert ncsim("run", path) == 0
+
+
+def test_faults_of_generators_are_told_as_they_were_typed(tmp_path, capsys):
+    path = tmp_path / "made.yaml"
+
+    assert ncsim("new", path, "--network", "gird", "-s", "scheduller=heft") == 1
+    told = capsys.readouterr().err
+    assert "ncsim new  network.type: must be one of grid" in told
+    assert "did you mean 'grid'?" in told
+    assert ncsim("new", path, "-s", "scheduller=heft") == 1
+    assert "ncsim new  config.scheduller: unknown key" in capsys.readouterr().err
+    assert not path.exists()
+
+
+def test_nothing_is_replaced(tmp_path, capsys):
+    path = tmp_path / "made.yaml"
+    path.write_text("mine", encoding="utf-8")
+
+    assert ncsim("new", path) == 1
+    assert path.read_text(encoding="utf-8") == "mine"
+    assert "exists already" in capsys.readouterr().err
