@@ -58,6 +58,18 @@ def test_links_at_one_receiver_conflict_even_when_nobody_hears_anybody():
     assert relations_of(shared).conflicts(0).tolist() == [1]
 
 
+@pytest.mark.parametrize("ends", [((0, 1), (0, 2)), ((0, 1), (1, 2)), ((0, 1), (2, 1))])
+@pytest.mark.parametrize("rts_cts", [False, True])
+def test_links_that_share_a_node_conflict_even_if_nothing_is_ever_sensed(ends, rts_cts):
+    places = [Position(0, 0), Position(10, 0), Position(20, 0)]
+    network = network_of(places, ())
+    shared = Network(network.nodes, tuple(link(*each) for each in ends))
+
+    related = relations_of(shared, rts_cts=rts_cts, cca_threshold_dBm=100.0)
+
+    assert [related.conflicts(i).tolist() for i in (0, 1)] == [[1], [0]]
+
+
 def test_rts_cts_adds_what_receivers_hear():
     facing = Scene(((0.0, 0.0), (160.0, 0.0)), ((50.0, 0.0), (110.0, 0.0)), ()).network()
 

@@ -48,6 +48,11 @@ def test_rates_are_selected_at_the_threshold_and_not_below():
     assert phy_rate_Mbps(snr_dB, read_table("ax")).tolist() == [0.0, 8.6, 8.6, 17.2, 143.4, 143.4]
 
 
+@pytest.mark.parametrize(("snr_dB", "index"), [(4.999, -1), (5.0, 0), (8.0, 1), (99.0, 11)])
+def test_schemes_are_selected_as_rates_are(snr_dB, index):
+    assert read_table("ax").index_for(snr_dB) == index
+
+
 @pytest.mark.parametrize(("width", "factor"), [(20, 1), (40, 2), (80, 4), (160, 8)])
 def test_rates_grow_in_proportion_to_the_channel_width(width, factor):
     table = rate_table(Radio(channel_width_mhz=width))
