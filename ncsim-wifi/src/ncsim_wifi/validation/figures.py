@@ -29,7 +29,8 @@ from ncsim_wifi.validation.packet import (
 from ncsim_wifi.validation.rows import read_data
 from ncsim_wifi.validation.scenes import parallel, single
 
-MODEL, SECOND, ENGINE, PACKETS, GREY = "#0072B2", "#D55E00", "#D55E00", "#000000", "#777777"
+MODEL, SECOND, THIRD, ENGINE = "#0072B2", "#D55E00", "#009E73", "#D55E00"
+PACKETS, GREY = "#000000", "#777777"
 Corner: TypeAlias = Literal["upper right", "lower right", "lower left"]
 
 STEP_s = 0.05
@@ -142,6 +143,8 @@ def ns3() -> Figure:
     _draw(right, _curve_MBps(fluid.fixed_capture_factor), "-", SECOND, "")
     captured = predicted_separation_MBps(FIXED_CAPTURE)
     _draw(right, captured, "D", SECOND, "ncsim, fixed_capture")
+    spatial = predicted_separation_MBps("csma_spatial")
+    _draw(right, spatial, "^--", THIRD, "ncsim, csma_spatial")
     _draw(right, packets["two_links_by_separation_m"], "s", PACKETS, "ns-3, mean of 20 seeds")
     _mark_sensing_range(right)
     _label(right, "(b) Two parallel 30 m links", "Separation (m)", goodput, "lower right")
