@@ -4,7 +4,7 @@ All checks work on plain rows and pass over what the schema has already refused,
 mistake is reported once, and all mistakes at once.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -14,7 +14,9 @@ from ncsim_core.registry import Registry
 from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
 from ncsim_core.scenario.model import Config
 from ncsim_core.scenario.resolution import NEEDS_RADIO, RADIO
-from ncsim_core.scenario.wording import did_you_mean
+from ncsim_core.scenario.wording import Hints
+
+MAX_TASKS_SHOWN = 20
 
 Row: TypeAlias = Mapping[str, Any]
 
@@ -25,24 +27,24 @@ def network_problems(scenario: Row) -> Iterator[Problem]:
     links = list(rows(scenario, ("scenario", "network", "links")))
     yield from _repeated(nodes, "node")
     yield from _repeated(links, "link")
-    node_ids = _ids(nodes)
+    node_ids = _Known("node", nodes)
     for path, link in links:
         for end in ("from", "to"):
-            yield from _dangling((*path, end), link.get(end), node_ids, "node")
+            yield from node_ids.dangling((*path, end), link.get(end))
         if "from" in link and link["from"] == link.get("to"):
             yield Problem((*path, "to"), "a link must not lead from a node to itself", link["to"])
 
 
 def dag_problems(scenario: Row) -> Iterator[Problem]:
     """Yield repeated ids, edges that lead nowhere or stand twice, cycles, and wrong pins."""
-    nodes = list(rows(scenario, ("scenario", "network", "nodes")))
+    nodes = _Known("node", rows(scenario, ("scenario", "network", "nodes")))
     dags = list(rows(scenario, ("scenario", "dags")))
     yield from _repeated(dags, "DAG")
     for path, dag in dags:
         tasks = list(rows(dag, (*path, "tasks"), start=len(path)))
         edges = list(rows(dag, (*path, "edges"), start=len(path)))
         yield from _repeated(tasks, "task")
-        yield from _wrong_pins(tasks, _ids(nodes))
+        yield from _wrong_pins(tasks, nodes)
         yield from _edge_problems(tasks, edges)
 
 
@@ -74,9 +76,19 @@ def rows(data: Data, path: Path, start: int = 0) -> Iterator[tuple[Path, Row]]:
             yield (*path, index), row
 
 
-def _ids(listed: list[tuple[Path, Row]]) -> dict[str, None]:
-    """Return ids in file order; a number counts as its text, for it has a fault of its own."""
-    return {str(row["id"]): None for _, row in listed if "id" in row}
+class _Known:
+    """Ids in file order; a number counts as its text, for it has a fault of its own."""
+
+    def __init__(self, noun: str, listed: Iterable[tuple[Path, Row]]) -> None:
+        self.noun = noun
+        self.ids = {str(row["id"]): None for _, row in listed if "id" in row}
+        self.hints = Hints(self.ids)
+
+    def dangling(self, path: Path, name: object) -> Iterator[Problem]:
+        """Yield that ``name`` is none of the ids."""
+        if isinstance(name, str) and name and name not in self.ids:
+            hint = self.hints.hint(name)
+            yield Problem(path, f"no {self.noun} {name!r}", shown(name), hint)
 
 
 def _repeated(listed: list[tuple[Path, Row]], noun: str) -> Iterator[Problem]:
@@ -91,26 +103,21 @@ def _repeated(listed: list[tuple[Path, Row]], noun: str) -> Iterator[Problem]:
         first.setdefault(name, path)
 
 
-def _dangling(path: Path, name: object, known: Mapping[str, None], noun: str) -> Iterator[Problem]:
-    if isinstance(name, str) and name and name not in known:
-        yield Problem(path, f"no {noun} {name!r}", shown(name), did_you_mean(name, known))
-
-
-def _wrong_pins(tasks: list[tuple[Path, Row]], node_ids: Mapping[str, None]) -> Iterator[Problem]:
-    if node_ids:  # without any node, there is a greater fault elsewhere
+def _wrong_pins(tasks: list[tuple[Path, Row]], nodes: _Known) -> Iterator[Problem]:
+    if nodes.ids:  # without any node, there is a greater fault elsewhere
         for path, task in tasks:
-            yield from _dangling((*path, "pinned_to"), task.get("pinned_to"), node_ids, "node")
+            yield from nodes.dangling((*path, "pinned_to"), task.get("pinned_to"))
 
 
 def _edge_problems(
     tasks: list[tuple[Path, Row]], edges: list[tuple[Path, Row]]
 ) -> Iterator[Problem]:
-    task_ids = _ids(tasks)
+    task_ids = _Known("task", tasks)
     first: dict[tuple[str, str], Path] = {}
     for path, edge in edges:
         source, target = edge.get("from"), edge.get("to")
-        yield from _dangling((*path, "from"), source, task_ids, "task")
-        yield from _dangling((*path, "to"), target, task_ids, "task")
+        yield from task_ids.dangling((*path, "from"), source)
+        yield from task_ids.dangling((*path, "to"), target)
         if not (isinstance(source, str) and isinstance(target, str)):
             continue
         if (source, target) in first:
@@ -131,7 +138,15 @@ def _cycle(edges: Mapping[tuple[str, str], Path]) -> Iterator[Problem]:
     except CycleError as error:
         tasks: list[str] = error.args[1]
         path = max(edges[pair] for pair in pairwise(tasks))
-        yield Problem(path, f"the edges form a cycle: {' -> '.join(tasks)}")
+        yield Problem(path, f"the edges form a cycle: {_listed(tasks)}")
+
+
+def _listed(tasks: list[str]) -> str:
+    """Return the tasks of a cycle, a long one without its middle."""
+    if len(tasks) > MAX_TASKS_SHOWN:
+        half = MAX_TASKS_SHOWN // 2
+        tasks = [*tasks[:half], f"({len(tasks) - 2 * half} more)", *tasks[-half:]]
+    return " -> ".join(tasks)
 
 
 def _unpinned(dags: list[tuple[Path, Row]]) -> Iterator[Problem]:

@@ -1,5 +1,6 @@
 """Where a scenario's text comes from, read with care, and where in it a fault lies."""
 
+import codecs
 import difflib
 import json
 import re
@@ -191,10 +192,11 @@ def _decoded(data: bytes, source: Source) -> str:
     for mark, encoding in _BYTE_ORDER_MARKS.items():
         if data.startswith(mark):
             raise source.lone_fault(f"is {encoding} text; save it as UTF-8", Span(1, 1))
+    data = data.removeprefix(codecs.BOM_UTF8)
     try:
-        return data.decode("utf-8-sig")
+        return data.decode("utf-8")
     except UnicodeDecodeError as error:
-        before = data[: error.start].decode("utf-8-sig")
+        before = data[: error.start].decode("utf-8")
         message = f"is not UTF-8 text: byte 0x{data[error.start]:02x}; save it as UTF-8"
         raise Source(source.name, before).lone_fault(message, _end_of(before)) from None
 

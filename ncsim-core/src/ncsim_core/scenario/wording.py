@@ -10,6 +10,9 @@ from ncsim_core.scenario.faults import Path, Problem, shown
 Finding: TypeAlias = Any
 """A ``jsonschema.ValidationError``, whose fields depend on the keyword that failed."""
 
+MAX_COMPARISONS = 20_000
+"""Names that are compared with unknown ones; each costs some 20 us."""
+
 _TYPE_WORDS = {
     "object": "a mapping",
     "array": "a list",
@@ -39,6 +42,23 @@ def worded(path: Path, error: Finding) -> Iterable[Problem]:
 def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:
     """Return the candidate that was probably meant by ``word``."""
     return next(iter(difflib.get_close_matches(str(word), sorted(candidates), n=1)), None)
+
+
+class Hints:
+    """Suggestions out of one set of names; no more of them than can be found in a moment.
+
+    Args:
+        names: What could have been meant.
+    """
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self._names = sorted(names)
+        self._words_left = max(1, MAX_COMPARISONS // max(1, len(self._names)))
+
+    def hint(self, word: str) -> str | None:
+        """Return the name that was probably meant by ``word``, ``None`` for the later words."""
+        self._words_left -= 1
+        return did_you_mean(word, self._names) if self._words_left >= 0 else None
 
 
 def _unknown_keys(path: Path, error: Finding) -> Iterable[Problem]:

@@ -1,0 +1,133 @@
+"""What is fuzzed: each target takes bytes and returns, or raises what must never be raised.
+
+Allowed is one of two outcomes: the input is accepted, or refused with one ``NcsimError`` whose text
+says where. What is accepted is used, too, as far as that is cheap.
+"""
+
+import re
+import tempfile
+from collections.abc import Callable
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+from ncsim_core.api import prepare
+from ncsim_core.engine.setup import Limits
+from ncsim_core.errors import NcsimError
+from ncsim_core.metrics import compute_metrics
+from ncsim_core.scenario.faults import ScenarioFaults
+from ncsim_core.scenario.loader import load_scenario, parse_scenario
+from ncsim_core.scenario.model import Scenario
+from ncsim_core.sweep.reading import load_sweep
+from ncsim_core.trace.check import check_trace
+from ncsim_core.trace.export.perfetto import perfetto_text
+from ncsim_core.trace.export.published import published_text
+from ncsim_core.trace.loading import load_run
+from ncsim_core.trace.records import TraceError
+
+FOLDER: Final = Path(tempfile.mkdtemp(prefix="ncsim-fuzz-"))
+MAX_RUN_SIZE: Final = 60
+"""Nodes, links and tasks up to which an accepted scenario is also run for a while."""
+LINE_OF_TRACE: Final = re.compile(r"trace\.jsonl(:\d+: |: (cannot be read|this run|is zstd))")
+
+
+class BadRefusalError(AssertionError):
+    """An error that does not say where."""
+
+
+def scenario_yaml(data: bytes) -> None:
+    """Read a scenario, write it out again, and run it for a while."""
+    _scenario(data, FOLDER / "scenario.yaml")
+
+
+def scenario_json(data: bytes) -> None:
+    """As a JSON file."""
+    _scenario(data, FOLDER / "scenario.json")
+
+
+def published(data: bytes) -> None:
+    """Read a file written for the published ncsim; the translation says what it changed."""
+    _scenario(data, FOLDER / "published.yaml")
+
+
+def _scenario(data: bytes, path: Path) -> None:
+    path.write_bytes(data)
+    try:
+        scenario = load_scenario(path)
+    except NcsimError as error:
+        _expect_places(error)
+        return
+    again = parse_scenario(scenario.to_yaml())
+    assert again.sha256 == scenario.sha256, "what was written out is another scenario"
+    if _size(scenario) <= MAX_RUN_SIZE:
+        _run(scenario)
+
+
+def _size(scenario: Scenario) -> int:
+    tasks = sum(len(each.dag.tasks) for each in scenario.injections)
+    return len(scenario.network.nodes) + len(scenario.network.links) + tasks
+
+
+def _run(scenario: Scenario) -> None:
+    try:
+        simulation = prepare(scenario, limits=Limits(max_events=200))
+    except NcsimError as error:
+        assert str(error).strip(), "an error without a text"
+        return
+    outcome = simulation.run()
+    assert (outcome.makespan_us is not None) == (outcome.status == "completed")
+    assert outcome.detail or outcome.status == "completed"
+
+
+def sweep(data: bytes) -> None:
+    """Read a sweep and list its first runs."""
+    path = FOLDER / "sweep.yaml"
+    path.write_bytes(data)
+    try:
+        plan = load_sweep(path)
+    except NcsimError as error:
+        _expect_places(error)
+        return
+    for run in islice(plan.runs(), 5):
+        assert len(run.values) == len(plan.columns)
+
+
+def trace(data: bytes) -> None:
+    """Read a trace, check it, count it, export it."""
+    path = FOLDER / "trace.jsonl"
+    path.write_bytes(data)
+    for use in (lambda: list(check_trace(path)), lambda: published_text(path)):
+        _tolerate_trace_error(use)
+    try:
+        run = load_run(path)
+    except TraceError as error:
+        _expect_line(error)
+        return
+    _tolerate_trace_error(lambda: compute_metrics(run))
+    _tolerate_trace_error(lambda: perfetto_text(run))
+
+
+def _tolerate_trace_error(use: Callable[[], object]) -> None:
+    try:
+        use()
+    except TraceError as error:
+        _expect_line(error)
+
+
+def _expect_line(error: TraceError) -> None:
+    if not LINE_OF_TRACE.search(str(error)):
+        raise BadRefusalError(str(error)) from error
+
+
+def _expect_places(error: NcsimError) -> None:
+    if not isinstance(error, ScenarioFaults):
+        raise BadRefusalError(f"{type(error).__name__}: {error}") from error
+    without = [fault.render() for fault in error.faults if fault.line is None]
+    if without or not error.faults:
+        raise BadRefusalError(f"faults without a place: {without}") from error
+
+
+TARGETS: Final[dict[str, Callable[[bytes], None]]] = {
+    each.__name__: each for each in (scenario_yaml, scenario_json, published, sweep, trace)
+}
+
