@@ -20,7 +20,7 @@ from ncsim_core.network import Link, LinkId, Network, Node, NodeId
 from ncsim_core.testing.builders import rated
 from ncsim_core.testing.drawing import Digits, drawn_codes
 from ncsim_core.testing.reference_engine import INJECT, ReferenceEngine
-from ncsim_core.testing.toys import ToyRadio, models
+from ncsim_core.testing.toys import ToyRadio, ToyRelays, models
 from ncsim_core.workflow import DAG, Dependency, Injection, PlacementPlan, Task
 
 IS_NIGHTLY = settings.get_current_profile_name() == "nightly"
@@ -142,7 +142,10 @@ def scenarios(draw):
     ids = [node.id for node in network.nodes]
     listed = draw(st.lists(dag_codes(), min_size=1, max_size=4))
     injections = [injection_from(number, codes, ids) for number, codes in enumerate(listed)]
-    radio = radio_from(draw(drawn_codes(0, 6) | drawn_codes(10, 40)), len(network.links))
+    if draw(st.integers(0, 7)) == 7:
+        radio = ToyRelays(network, stop_at=draw(st.sampled_from((99, 99, 2, 3))))
+    else:
+        radio = radio_from(draw(drawn_codes(0, 6) | drawn_codes(10, 40)), len(network.links))
     scheduler = draw(st.sampled_from((None, None, EmptiestNode())))
     queue = draw(st.sampled_from((FifoQueue, FifoQueue, FifoQueue, LastInFirstOut)))
     who = models(network, injections, scheduler=scheduler, interference=radio, queue=queue)

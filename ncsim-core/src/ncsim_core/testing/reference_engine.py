@@ -160,6 +160,8 @@ class ReferenceEngine:
     def rates(self) -> dict[Flow, Fraction]:
         """Return the rate of every active transfer: the least share on its route (Eq. 1)."""
         flows = self.active_flows()
+        if self.models.interference.decides_routes:
+            return self.route_rates(sorted(flows, key=lambda flow: flow.route))
         counts: dict[int, int] = {}
         for link in (link for flow in flows for link in flow.route):
             counts[link] = counts.get(link, 0) + 1
@@ -171,6 +173,14 @@ class ReferenceEngine:
             for link, factor in zip(active, factors, strict=True)
         }
         return {flow: min(share[link] for link in flow.route) for flow in flows}
+
+    def route_rates(self, flows: list[Flow]) -> dict[Flow, Fraction]:
+        """Return what a model that decides the rates of whole routes gives to each transfer."""
+        if not flows:
+            return {}
+        answer = self.models.interference.route_rates([flow.route for flow in flows])
+        rates = [Fraction(float(rate_MBps)) for rate_MBps in answer.rates_MBps]
+        return dict(zip(flows, rates, strict=True))
 
     def serve_until(self, at_us: int) -> None:
         """Move the clock; every transfer is served at its rate meanwhile (Eq. 13)."""
