@@ -71,8 +71,7 @@ def _size(scenario: Scenario) -> int:
 def _run(scenario: Scenario) -> None:
     try:
         simulation = prepare(scenario, limits=Limits(max_events=200))
-    except NcsimError as error:
-        assert str(error).strip(), "an error without a text"
+    except NcsimError:
         return
     outcome = simulation.run()
     assert (outcome.makespan_us is not None) == (outcome.status == "completed")
@@ -130,4 +129,3 @@ def _expect_places(error: NcsimError) -> None:
 TARGETS: Final[dict[str, Callable[[bytes], None]]] = {
     each.__name__: each for each in (scenario_yaml, scenario_json, published, sweep, trace)
 }
-

@@ -26,6 +26,7 @@ class Generator:
         summary: One line.
         make: From draws, parameters and the number of the DAG (0 for networks), a shape or form.
         properties: JSON Schema of each parameter of its own.
+        size: From the parameters, about how many nodes and links, or tasks and edges, that makes.
         is_random: Whether it draws even if all amounts are given.
     """
 
@@ -33,12 +34,17 @@ class Generator:
     summary: str
     make: Callable[[Draws, Parameters, int], Any]
     properties: Mapping[str, Schema]
+    size: Callable[[Parameters], int]
     is_random: bool = False
 
     @property
     def required(self) -> list[str]:
         """Return the parameters without a default."""
         return [name for name, schema in self.properties.items() if "default" not in schema]
+
+
+PAIRS_PER_PART: Final = 25
+"""Pairs of nodes whose distance is looked at in the time that one node or link takes to make."""
 
 
 def _whole(description: str, minimum: int, **more: object) -> Schema:
@@ -137,24 +143,28 @@ NETWORKS: Final[Mapping[str, Generator]] = {
                     "default": "checkerboard",
                 },
             },
+            lambda given: 7 * given["rows"] * given["columns"],
         ),
         Generator(
             "paper_grid",
             "The paper's square grid (Section VII).",
             lambda _, given, __: shapes.grid(given["size"], given["size"]),
             {"size": _whole("Rows, and columns.", 1)},
+            lambda given: 7 * given["size"] ** 2,
         ),
         Generator(
             "line",
             "Nodes in a row.",
             lambda _, given, __: shapes.line(**given),
             {"nodes": _whole("Nodes.", 1), "spacing_m": _SPACING},
+            lambda given: 3 * given["nodes"],
         ),
         Generator(
             "ring",
             "Nodes on a circle.",
             lambda _, given, __: shapes.ring(**given),
             {"nodes": _whole("Nodes.", 3), "spacing_m": _SPACING},
+            lambda given: 3 * given["nodes"],
         ),
         Generator(
             "star",
@@ -164,6 +174,7 @@ NETWORKS: Final[Mapping[str, Generator]] = {
                 "leaves": _whole("Nodes around the middle.", 1),
                 "radius_m": _positive("Distance from the middle, m.", default=SPACING_m),
             },
+            lambda given: 3 * given["leaves"],
         ),
         Generator(
             "random_geometric",
@@ -175,6 +186,7 @@ NETWORKS: Final[Mapping[str, Generator]] = {
                 "range_m": _RANGE,
                 "connected": _CONNECTED,
             },
+            lambda given: given["nodes"] ** 2 // PAIRS_PER_PART,
             is_random=True,
         ),
         Generator(
@@ -196,6 +208,7 @@ NETWORKS: Final[Mapping[str, Generator]] = {
                 "range_m": _RANGE,
                 "connected": _CONNECTED,
             },
+            lambda given: (given["clusters"] * given["nodes_each"]) ** 2 // PAIRS_PER_PART,
             is_random=True,
         ),
     )
@@ -210,24 +223,28 @@ DAGS: Final[Mapping[str, Generator]] = {
             "The paper's fork-join (5), diamond (10) or pipeline (20 tasks).",
             lambda _, given, __: forms.paper_form(**given),
             {"tasks": {"description": "5, 10 or 20.", "enum": [5, 10, 20]}},
+            lambda given: 2 * given["tasks"],
         ),
         Generator(
             "chain",
             "Tasks one after the other.",
             lambda _, given, __: forms.chain(**given),
             {"tasks": _whole("Tasks.", 1)},
+            lambda given: 2 * given["tasks"],
         ),
         Generator(
             "fork_join",
             "One task, several that it feeds, and one that they feed.",
             lambda _, given, __: forms.fork_join(**given),
             {"width": _whole("Tasks in the middle.", 1)},
+            lambda given: 3 * given["width"],
         ),
         Generator(
             "diamond",
             "A square lattice of tasks, each feeding right and down; size 2 is four tasks.",
             lambda _, given, __: forms.diamond(**given),
             {"size": _whole("Tasks per side.", 1)},
+            lambda given: 3 * given["size"] ** 2,
         ),
         Generator(
             "layered_random",
@@ -244,6 +261,7 @@ DAGS: Final[Mapping[str, Generator]] = {
                     "default": 0.3,
                 },
             },
+            lambda given: given["layers"] * given["width"] ** 2,
             is_random=True,
         ),
         Generator(
@@ -254,18 +272,21 @@ DAGS: Final[Mapping[str, Generator]] = {
                 "depth": _whole("Levels below the root.", 0, maximum=20),
                 "branching": _whole("Tasks fed by each.", 1, maximum=100),
             },
+            lambda given: 2 * max(2, given["branching"]) ** (given["depth"] + 1),
         ),
         Generator(
             "gaussian_elimination",
             "Pivots and column updates of a square matrix.",
             lambda _, given, __: forms.gaussian_elimination(**given),
             {"size": _whole("Of the matrix.", 2)},
+            lambda given: 2 * given["size"] ** 2,
         ),
         Generator(
             "fft",
             "Recursive calls and butterflies of a fast Fourier transform.",
             lambda _, given, __: forms.fft(**given),
             {"points": _whole("A power of 2.", 1)},
+            lambda given: 4 * given["points"] * given["points"].bit_length(),
         ),
     )
 }

@@ -1,8 +1,9 @@
 """From the parameters in a file to networks and DAGs."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
+from ncsim_core.errors import ScenarioError
 from ncsim_core.generators import dags as forms
 from ncsim_core.generators import networks as shapes
 from ncsim_core.generators.amounts import Amount, Uniform
@@ -20,6 +21,9 @@ from ncsim_core.network import Network
 from ncsim_core.units import us_from_s
 from ncsim_core.workflow import Injection
 
+MAX_PARTS: Final = 1_000_000
+"""Nodes and links, or tasks and edges, of one scenario that a generator makes."""
+
 
 def network_from(parameters: Parameters, draws: Draws) -> Network:
     """Return the network that ``{type: ..., ...}`` describes.
@@ -28,6 +32,7 @@ def network_from(parameters: Parameters, draws: Draws) -> Network:
         ScenarioError: The parameters cannot be met.
     """
     generator = NETWORKS[parameters["type"]]
+    _refuse_giants(generator, parameters, 1)
     shape = generator.make(draws, _filled(parameters, generator.properties), 0)
     own = _filled(parameters, NETWORK_PROPERTIES)
     equipment = shapes.Equipment(
@@ -44,6 +49,7 @@ def dags_from(parameters: Parameters, draws: Draws) -> tuple[Injection, ...]:
     """
     generator = DAGS[parameters["type"]]
     own = _filled(parameters, DAG_PROPERTIES)
+    _refuse_giants(generator, parameters, own["count"])
     workload = forms.Workload(_amount(own["compute_cost"]), _amount(own["payload_MB"]))
     given = _filled(parameters, generator.properties)
     return tuple(
@@ -53,6 +59,14 @@ def dags_from(parameters: Parameters, draws: Draws) -> tuple[Injection, ...]:
         )
         for number in range(own["count"])
     )
+
+
+def _refuse_giants(generator: Generator, parameters: Parameters, count: int) -> None:
+    """Raise if what is asked for would fill the memory before anybody could stop it."""
+    if count * generator.size(parameters) > MAX_PARTS:
+        raise ScenarioError(
+            f"{generator.name} of this size has more than {MAX_PARTS:,} parts, the most allowed"
+        )
 
 
 def depends_on_seed(parameters: Parameters, generators: Mapping[str, Generator]) -> bool:

@@ -32,6 +32,9 @@ _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U000100
 _BYTE_ORDER_MARKS = {b"\xff\xfe\x00\x00": "UTF-32", b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16"}
 
 
+MAX_BYTES = 256 << 20
+
+
 @dataclass(frozen=True)
 class Source:
     """A text and its name.
@@ -87,13 +90,16 @@ def read_source(path: FilePath) -> Source:
     """
     source = Source(str(path))
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
         raise source.lone_fault(f"no such file{_near_file(path)}") from None
     except IsADirectoryError:
         raise source.lone_fault("is a directory, not a scenario file") from None
     except OSError as error:
         raise source.lone_fault(f"cannot be read: {error.strerror or error}") from None
+    if len(data) > MAX_BYTES:
+        raise source.lone_fault(f"is larger than {MAX_BYTES >> 20} MiB; no scenario is", Span(1, 1))
     return Source(str(path), _decoded(data, source), path.suffix.lower() == ".json")
 
 

@@ -12,7 +12,8 @@ Value: TypeAlias = Any
 
 Part: TypeAlias = Literal["network", "dags", "config"]
 
-MAX_LEVELS = 1_000_000
+MAX_LEVELS = 10_000
+"""Values of all axes together; each is tried out when the file is read."""
 _ROUNDING_DIGITS = 12
 
 
@@ -65,13 +66,15 @@ def part_of(path: str) -> Part:
 
 def levels_of(values: Value, place: Path) -> tuple[Sequence[Value], list[Problem]]:
     """Return the values that a list or a range in a sweep file stands for."""
+    if isinstance(values, list) and len(values) > MAX_LEVELS:
+        return [], [Problem(place, f"has more than {MAX_LEVELS} values")]
     if isinstance(values, list):
         return values, []
     if not isinstance(values, Mapping):
         return [], [Problem(place, "must be a list of values or a range", shown(values))]
     try:
         return _range(values), []
-    except ValueError as error:
+    except (ValueError, OverflowError) as error:
         return [], [Problem(place, str(error))]
 
 
@@ -139,14 +142,17 @@ def _range(row: Mapping[str, Any]) -> list[Value]:
         raise ValueError("give a step or a count, not both")
     if "scale" in row and "count" not in row:
         raise ValueError("a scale needs a count of values")
+    if "count" in row and row["count"] > MAX_LEVELS:
+        raise ValueError(f"has more than {MAX_LEVELS} values")
     if "count" in row:
         return _spread(start, end, row["count"], row.get("scale", "linear"))
     step = row.get("step", 1)
-    if step == 0 or (end - start) / step < 0:
+    steps = math.nan if step == 0 else (end - start) / step
+    if math.isnan(steps) or steps < 0:
         raise ValueError(f"a step of {step} does not lead from {start} to {end}")
-    steps = math.floor((end - start) / step + 1e-9)
     if steps >= MAX_LEVELS:
-        raise ValueError(f"has {steps + 1} values; {MAX_LEVELS} are allowed")
+        raise ValueError(f"has more than {MAX_LEVELS} values")
+    steps = math.floor(steps + 1e-9)
     return [_tidy(start + number * step) for number in range(steps + 1)]
 
 

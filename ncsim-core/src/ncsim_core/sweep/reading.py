@@ -15,6 +15,7 @@ from ncsim_core.scenario.source import Origins, Source, located, read_document, 
 from ncsim_core.scenario.wording import did_you_mean
 from ncsim_core.sweep.axes import Axis, levels_of, repeated
 from ncsim_core.sweep.checking import frame_problems, value_problems
+from ncsim_core.sweep.extent import extent_problems
 from ncsim_core.sweep.plan import Base, RunLimits, SweepPlan
 from ncsim_core.sweep.where import ConditionError, condition, spellings
 
@@ -58,7 +59,7 @@ class _Reading:
         self._refuse(frame_problems(self._document, self._registry))
         rows: Mapping[str, Any] = self._document["sweep"]
         axes, problems = _axes(rows)
-        self._refuse(problems)
+        self._refuse([*problems, *extent_problems(axes, rows)])
         columns = [path for axis in axes for path in axis.paths]
         replicate = rows.get("replicate", {})
         self._refuse([*_name_problems(columns, replicate, rows), *self._file_problems(rows, axes)])

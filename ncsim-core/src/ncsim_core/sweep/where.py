@@ -61,11 +61,16 @@ def condition(text: str, columns: Sequence[str]) -> Evaluate:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         reason = error.msg if isinstance(error, SyntaxError) else str(error)
         raise ConditionError(f"cannot be read as a condition: {reason}") from None
-    evaluate = _compiled(tree.body, spellings(columns))
+    try:
+        evaluate = _compiled(tree.body, spellings(columns))
+    except RecursionError:
+        raise ConditionError("cannot be read as a condition: it is nested too deeply") from None
 
     def is_wanted(values: Mapping[str, Any]) -> bool:
         try:
             return bool(evaluate(values))
+        except RecursionError:
+            raise ConditionError("is nested too deeply") from None
         except (TypeError, ZeroDivisionError, OverflowError) as error:
             raise ConditionError(f"does not fit the values {dict(values)}: {error}") from None
 
