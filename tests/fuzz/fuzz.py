@@ -1,9 +1,9 @@
 """Fuzz one target for some minutes: ``python tests/fuzz/fuzz.py scenario_yaml --minutes 30``.
 
-Guided by coverage with atheris (``pip install atheris``); without it, by chance alone. What breaks is
-left in ``/tmp/ncsim-fuzz/TARGET/``; inputs that reach new code go to ``--corpus``, which
-``--minimise`` thins out into ``tests/fuzz/corpus/TARGET/``. Memory is limited to 1 GB beyond what is
-there at the start, a single input to 15 minutes by the clock, for machines are shared.
+Guided by coverage with atheris (``pip install atheris``); without it, by chance alone. What breaks
+is left in ``/tmp/ncsim-fuzz/TARGET/``; inputs that reach new code go to ``corpus/`` in there, which
+``--minimise`` thins out into ``tests/fuzz/corpus/TARGET/``. Memory is limited to 1 GB, a single
+input to 15 minutes by the clock, for machines are shared.
 """
 
 import argparse
@@ -23,7 +23,7 @@ HERE: Final = Path(__file__).parent
 WORK: Final = Path("/tmp/ncsim-fuzz")
 MEMORY_BYTES: Final = 1 << 30
 SECONDS_PER_INPUT: Final = 900
-ODD_VALUES: Final = [".nan", ".inf", "-.inf", "0", "-0.0", "-1", "1", "2", "1e308", "1e-308", "1e400", "-1e400", "999999999999999999999", "true", "null", "~", "[]", "{}", "[[]]", "[1,2]", "{a:1}", "''", "'", "'", "'x'", "n0", "n1", "T0", "dag_1", "heft", "0x10", "0o7", "1_000", "1:30", "2020-01-01", "!!int", "&a", "*a", "<<", "0.1", "5e-324", "wifi", "none", "static", "csma_bianchi", "csma_clique", "csma_spatial", "18446744073709551616", "fifo", "\ufeff", "{type:wifi}", "{low:1,high:0}", "{from:0,to:1,step:1e-300}", "{from:1,to:2,count:3,scale:log}", "1e-7"]
+ODD_VALUES: Final = (HERE / "odd_values.txt").read_text("utf-8").split()
 SEEDS: Final = {
     "scenario_yaml": ("examples/*.yaml", "ncsim-core/tests/scenario/bad/*.yaml"),
     "published": ("examples/published-form/*.yaml",),

@@ -13,16 +13,22 @@ MICROSECONDS_PER_SECOND = 1_000_000
 COMPLETION_TOLERANCE_us = 1e-5
 """Slack before rounding a completion up, so that an exact end is not pushed one tick on."""
 
+HORIZON_us: Instant = 9_000_000_000 * MICROSECONDS_PER_SECOND
+"""No run goes on longer than this (285 years): beyond it a float no longer tells microseconds."""
+BEYOND_us: Instant = HORIZON_us + 1
+"""What stands for every later instant, and for never."""
+
 MEGABITS_PER_MEGABYTE = 8.0
 
 
 def us_from_s(seconds: float) -> Instant:
-    """Return the microsecond nearest to ``seconds`` (ties to even).
+    """Return the microsecond nearest to ``seconds`` (ties to even), at most ``BEYOND_us``.
 
     >>> us_from_s(500 / 300)
     1666667
     """
-    return round(seconds * MICROSECONDS_PER_SECOND)
+    exact_us = seconds * MICROSECONDS_PER_SECOND
+    return round(exact_us) if exact_us <= HORIZON_us else BEYOND_us
 
 
 def s_from_us(instant: Instant) -> float:
@@ -37,7 +43,8 @@ def s_from_us(instant: Instant) -> float:
 def service_time_us(remaining_MB: float, rate_MBps: float) -> Instant:
     """Return how long ``remaining_MB`` takes at ``rate_MBps``, rounded up to a microsecond.
 
-    Rounding up keeps unserved bytes from being discarded (paper, Section V-B).
+    At most ``BEYOND_us``. Rounding up keeps unserved bytes from being discarded (paper,
+    Section V-B).
 
     Args:
         remaining_MB: Bytes left to serve, 0 or more.
@@ -49,4 +56,6 @@ def service_time_us(remaining_MB: float, rate_MBps: float) -> Instant:
     500000
     """
     exact_us = remaining_MB / rate_MBps * MICROSECONDS_PER_SECOND - COMPLETION_TOLERANCE_us
+    if exact_us > HORIZON_us:
+        return BEYOND_us
     return ceil(exact_us) if exact_us > 0 else 0

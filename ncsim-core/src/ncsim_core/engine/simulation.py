@@ -20,7 +20,7 @@ from ncsim_core.engine.transfers import complete_transfer, start_transfer
 from ncsim_core.errors import EngineError, NcsimError
 from ncsim_core.models import Models
 from ncsim_core.network import Network
-from ncsim_core.units import s_from_us
+from ncsim_core.units import HORIZON_us, s_from_us
 
 MAX_LINES_IN_DETAIL = 20
 
@@ -81,7 +81,9 @@ class Simulation:
         self.outcome: Outcome | None = None
         chosen = self.setup.limits
         self._max_events = math.inf if chosen.max_events is None else chosen.max_events
-        self._last_us = math.inf if chosen.max_time_us is None else chosen.max_time_us
+        self._last_us = HORIZON_us
+        if chosen.max_time_us is not None:
+            self._last_us = min(HORIZON_us, chosen.max_time_us)
         for number, injection in enumerate(self.setup.injections):
             self.state.queue.push(injection.at_us, DAG_INJECT, number)
         for observer in observers:
@@ -156,8 +158,10 @@ class Simulation:
             raise EngineError(f"time went back from {state.now_us} to {due[0]} us")
         elif state.events >= self._max_events:
             self._end(RunStatus.LIMIT_REACHED, f"the limit of {limits.max_events} events")
+        elif limits.max_time_us is None or limits.max_time_us > HORIZON_us:
+            self._end(RunStatus.FAILED, _endless_detail(due, self.setup))
         else:
-            limit_s = s_from_us(limits.max_time_us or 0)
+            limit_s = s_from_us(limits.max_time_us)
             self._end(RunStatus.LIMIT_REACHED, f"the limit of {limit_s} simulated seconds")
 
     def _end_with_nothing_left(self) -> None:
@@ -193,6 +197,23 @@ def _blocked_detail(state: State, setup: Setup) -> str:
         left = f"{transfer.remaining_MB:.6g} MB left"
         lines.append(f"{dag.id}: {source} -> {target} ({left}, stalled on link {link})")
     return _listed("transfers stopped by interference", lines)
+
+
+def _endless_detail(due: Due, setup: Setup) -> str:
+    """Return what would happen after the end of time, and why."""
+    kind, number = EventKind(due[1]), due[4]
+    if kind is EventKind.DAG_INJECT:
+        what = f"DAG {setup.injections[number].dag.id}, whose time is too late"
+    elif kind in (EventKind.TRANSFER_START, EventKind.TRANSFER_COMPLETE):
+        entry = setup.dependencies[number]
+        ends = f"{setup.tasks[entry.source].task.id} -> {setup.tasks[entry.target].task.id}"
+        dag = setup.injections[entry.dag].dag.id
+        what = f"transfer {dag}: {ends}, whose size over rate or latency is too large"
+    else:
+        task = setup.tasks[number]
+        dag = setup.injections[task.dag].dag.id
+        what = f"task {dag}: {task.task.id}, whose cost over capacity is too large"
+    return f"the next event lies beyond {s_from_us(HORIZON_us):.0f} s, where runs end: {what}"
 
 
 def _unroutable_detail(state: State) -> str:

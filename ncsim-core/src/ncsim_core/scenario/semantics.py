@@ -191,8 +191,9 @@ def _position_problems(scenario: Row, config: Config, registry: Registry) -> Ite
             need = f"interference {rival} derives from it what link {name!r} hears; or mark that "
             needs |= dict.fromkeys(ends, need + "link medium: wired")
     for path, node in rows(scenario, ("scenario", "network", "nodes")):
-        if "position" not in node and node.get("id") in needs:
-            yield Problem(path, f"node {node['id']!r} needs a position: {needs[node['id']]}")
+        name = str(node.get("id"))
+        if "position" not in node and name in needs:
+            yield Problem(path, f"node {name!r} needs a position: {needs[name]}")
 
 
 def _radio_models(registry: Registry) -> str:

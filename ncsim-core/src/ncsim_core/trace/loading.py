@@ -124,6 +124,8 @@ def _enter_transfer(
             builder.route[transfer] = tuple(route)
             builder.transfer_started_us[transfer] = at_us
         case TransferEnded(_, at_us, transfer):
+            if not builder.route[transfer]:
+                raise ValueError(f"xend: transfer {transfer} has not started")
             builder.end_transfer(transfer, at_us)
         case RatesAssigned():
             for transfer, step in rate_steps(record):
