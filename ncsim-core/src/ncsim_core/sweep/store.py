@@ -59,6 +59,8 @@ class Store:
         file = None if path is None else path / STORE_NAME
         if file is not None and must_exist and not file.exists():
             raise ScenarioError(f"{path}: holds no {STORE_NAME}; is it the folder of a sweep?")
+        if path is not None and path.exists() and not path.is_dir():
+            raise ScenarioError(f"{path}: is a file; a study is a folder")
         if path is not None:
             path.mkdir(parents=True, exist_ok=True)
         try:
