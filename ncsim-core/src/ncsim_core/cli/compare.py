@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ncsim_core.cli.studies import Digits
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -20,7 +22,7 @@ def compare(
     every: Annotated[
         bool, typer.Option("--all", help="Every pair of runs, not only means over seeds.")
     ] = False,
-    digits: Annotated[int, typer.Option(min=0, max=12, help="After the point, in tables.")] = 3,
+    digits: Digits = 3,
 ) -> None:
     """Compare two runs, or two columns of a study: what changed, and why?
 

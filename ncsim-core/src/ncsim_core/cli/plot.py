@@ -6,7 +6,13 @@ from typing import Annotated
 
 import typer
 
-from ncsim_core.cli.studies import runs_of
+from ncsim_core.cli.studies import (
+    Measure,
+    ModeColumn,
+    PolicyColumn,
+    StudyFolder,
+    runs_of,
+)
 from ncsim_core.errors import ScenarioError
 
 
@@ -19,10 +25,7 @@ class FigureKind(StrEnum):
 
 
 def plot(  # noqa: PLR0913 - one parameter per option
-    study: Annotated[
-        Path,
-        typer.Argument(metavar="STUDY|RUN", help="Folder of a sweep; or a run, with --kind."),
-    ],
+    study: StudyFolder,
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture: .svg, .pdf or .png.")],
     *,
     kind: Annotated[
@@ -37,13 +40,9 @@ def plot(  # noqa: PLR0913 - one parameter per option
         ),
     ] = None,
     along: Annotated[str | None, typer.Option(help="Column of the x axis.")] = None,
-    measure: Annotated[str, typer.Option(help="What is drawn along it.")] = "makespan_s",
-    policy: Annotated[
-        str, typer.Option(help="Column of the policies to choose from.")
-    ] = "scheduler",
-    mode: Annotated[
-        str, typer.Option(help="Column that tells Solo (none) from Full.")
-    ] = "interference",
+    measure: Measure = "makespan_s",
+    policy: PolicyColumn = "scheduler",
+    mode: ModeColumn = "interference",
 ) -> None:
     """Draw means or slowdowns of a study along a column, or regret by case; or draw a run.
 

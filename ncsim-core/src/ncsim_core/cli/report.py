@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ncsim_core.cli.studies import runs_of
+from ncsim_core.cli.studies import (
+    Digits,
+    Measure,
+    ModeColumn,
+    PolicyColumn,
+    StudyFolder,
+    runs_of,
+)
 from ncsim_core.cli.tables import aligned
 from ncsim_core.errors import ScenarioError
 
@@ -36,7 +43,7 @@ class ReportFormat(StrEnum):
 
 
 def report(  # noqa: PLR0913 - one parameter per option
-    study: Annotated[Path, typer.Argument(metavar="STUDY", help="Folder of a sweep.")],
+    study: StudyFolder,
     *,
     show: Annotated[
         ReportTable,
@@ -47,22 +54,14 @@ def report(  # noqa: PLR0913 - one parameter per option
             "over everything; paired: differences along one column.",
         ),
     ] = ReportTable.SUMMARY,
-    measure: Annotated[
-        str, typer.Option(help="What is averaged: makespan_s, wall_s, route_work_MB_hops, ...")
-    ] = "makespan_s",
-    policy: Annotated[
-        str, typer.Option(help="Column of the policies to choose from.")
-    ] = "scheduler",
-    mode: Annotated[
-        str, typer.Option(help="Column that tells Solo (none) from Full.")
-    ] = "interference",
+    measure: Measure = "makespan_s",
+    policy: PolicyColumn = "scheduler",
+    mode: ModeColumn = "interference",
     along: Annotated[str | None, typer.Option(help="Column of --table paired.")] = None,
     confidence: Annotated[
         float, typer.Option(min=0.5, max=0.9999, help="Of the intervals.")
     ] = 0.95,
-    digits: Annotated[
-        int, typer.Option(min=0, max=12, help="After the point; CSV and Parquet keep all.")
-    ] = 3,
+    digits: Digits = 3,
     form: Annotated[
         ReportFormat, typer.Option("--format", "-f", help="How it is written.")
     ] = ReportFormat.TERMINAL,

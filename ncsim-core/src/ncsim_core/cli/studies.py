@@ -1,12 +1,26 @@
 """The runs of a study as verbs take them, with a word on what is not there yet."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 if TYPE_CHECKING:
     from ncsim_core.sweep.table import Table
+
+StudyFolder: TypeAlias = Annotated[Path, typer.Argument(metavar="STUDY", help="Folder of a sweep.")]
+Measure: TypeAlias = Annotated[
+    str, typer.Option("--measure", help="Number: makespan_s, wall_s, route_work_MB_hops, ...")
+]
+PolicyColumn: TypeAlias = Annotated[
+    str, typer.Option("--policy", help="Column of the policies to choose from.")
+]
+ModeColumn: TypeAlias = Annotated[
+    str, typer.Option("--mode", help="Column that tells Solo (none) from Full.")
+]
+Digits: TypeAlias = Annotated[
+    int, typer.Option("--digits", min=0, max=12, help="After the point, in tables for people.")
+]
 
 
 def runs_of(study: Path) -> "Table":

@@ -5,7 +5,7 @@ import sys
 from collections import Counter
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -17,7 +17,29 @@ SHOWN_ERRORS = 5
 ERROR_WIDTH = 200
 
 if TYPE_CHECKING:
-    from ncsim_core.sweep.running import SweepResults
+    from ncsim_core.sweep.running import SweepOptions, SweepResults
+
+
+Workers: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--workers", "-j", min=1, help="Processes; by default one per processor."),
+]
+ExecutorName: TypeAlias = Annotated[
+    str, typer.Option("--executor", help="process, serial, dask, or one that a package offers.")
+]
+Address: TypeAlias = Annotated[
+    str | None, typer.Option("--address", help="Of the Dask scheduler, tcp://...")
+]
+Shard: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--shard", metavar="I/N", help="Do part I of N only, for job arrays."),
+]
+RetryFailed: TypeAlias = Annotated[
+    bool, typer.Option("--retry-failed", help="Do runs again that failed or hit a limit.")
+]
+DryRun: TypeAlias = Annotated[
+    bool, typer.Option("--dry-run", help="Check the file and say how many runs it makes.")
+]
 
 
 def sweep(  # noqa: PLR0913 - one parameter per option
@@ -32,23 +54,12 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         Path | None, typer.Option("--output", "-o", help="Folder of the study.")
     ] = None,
     *,
-    workers: Annotated[
-        int | None,
-        typer.Option("--workers", "-j", min=1, help="Processes; by default one per processor."),
-    ] = None,
-    executor: Annotated[
-        str, typer.Option(help="process, serial, dask, or one that a package offers.")
-    ] = "process",
-    address: Annotated[str | None, typer.Option(help="Of the Dask scheduler, tcp://...")] = None,
-    shard: Annotated[
-        str | None, typer.Option(metavar="I/N", help="Do part I of N only, for job arrays.")
-    ] = None,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Do runs again that failed or hit a limit.")
-    ] = False,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check the file and say how many runs it makes.")
-    ] = False,
+    workers: Workers = None,
+    executor: ExecutorName = "process",
+    address: Address = None,
+    shard: Shard = None,
+    retry_failed: RetryFailed = False,
+    dry_run: DryRun = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Status as JSON.")] = False,
 ) -> None:
@@ -72,10 +83,16 @@ def sweep(  # noqa: PLR0913 - one parameter per option
         return
     if rest or output is None:
         raise ScenarioError("give one sweep file and -o STUDY, or 'status STUDY', or 'merge ...'")
-    from ncsim_core.sweep.running import SweepOptions, run_sweep
+    from ncsim_core.sweep.running import SweepOptions
 
     options = SweepOptions(workers, executor, address, _shard(shard), retry_failed)
-    with run_sweep(verb, output, options) as results:
+    _carry_out(verb, output, options, quiet=quiet)
+
+
+def _carry_out(file: str, output: Path, options: "SweepOptions", *, quiet: bool) -> None:
+    from ncsim_core.sweep.running import run_sweep
+
+    with run_sweep(file, output, options) as results:
         counts = _carried_out(results, quiet=quiet)
     typer.echo(f"{results.plan.name}: {_summary(counts)}, in {output}/")
     if counts.keys() - {"completed"}:

@@ -37,16 +37,6 @@ def structure(
     dags: Mapping[str, Any] | None = None,
 ) -> Schema:
     """Return the schema of the frame; what is not given is left to a check of its own."""
-    anything: Schema = {"type": "object"}
-    base = _object(
-        {
-            "scenario": {**_FILE, "description": "Scenario file, relative to this one."},
-            "network": _part("network", NETWORKS, NETWORK_PROPERTIES, network or anything),
-            "dags": _part("dags", DAGS, DAG_PROPERTIES, dags or {"type": "array"}),
-            "config": config or anything,
-        },
-        "What all runs have in common: a scenario file, and what is put in its place.",
-    )
     values = {
         "description": "Values by config path (rf.tx_power_dBm) or generator parameter "
         "(network.size); all combinations are run.",
@@ -56,7 +46,7 @@ def structure(
     properties = {
         "name": {"type": "string", "description": "What people call it."},
         "description": {"type": "string", "description": "Free text."},
-        "base": base,
+        "base": _base(config, network, dags),
         "vary": values,
         "zip": {
             "description": "Groups of paths whose lists are walked together.",
@@ -79,6 +69,23 @@ def structure(
         "required": ["sweep"],
         "additionalProperties": False,
     }
+
+
+def _base(
+    config: Mapping[str, Any] | None,
+    network: Mapping[str, Any] | None,
+    dags: Mapping[str, Any] | None,
+) -> Schema:
+    anything: Schema = {"type": "object"}
+    return _object(
+        {
+            "scenario": {**_FILE, "description": "Scenario file, relative to this one."},
+            "network": _part("network", NETWORKS, NETWORK_PROPERTIES, network or anything),
+            "dags": _part("dags", DAGS, DAG_PROPERTIES, dags or {"type": "array"}),
+            "config": config or anything,
+        },
+        "What all runs have in common: a scenario file, and what is put in its place.",
+    )
 
 
 def generator_schema(
