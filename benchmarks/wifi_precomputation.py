@@ -15,6 +15,7 @@ from typing import TypeVar
 
 from ncsim_core.context import BuildContext, ModelCache
 from ncsim_core.contracts.interference_model import InterferenceSession
+from ncsim_core.engine.sessions.choice import session_for
 from ncsim_core.network import Link, LinkId, Network, Node, NodeId, Position
 
 T = TypeVar("T")
@@ -64,9 +65,10 @@ def build(rows: int, columns: int, spacing_m: int) -> None:
     timed("link rates", lambda: WifiLinkModel(context).rate_links(network))
     related = timed("conflict graph and hidden powers", lambda: relations(context, Radio()))
     model = timed("thresholds of all links", lambda: csma_bianchi(context))
-    timed("session", model.open_session)
+    tables = timed("tables", model.tables)
+    timed("session", lambda: session_for(model, tables, 0))
     print(f"  {'together':38} {time.process_time() - start:8.3f} s")
-    timed("the same again, from the cache", lambda: csma_bianchi(context).open_session())
+    timed("the same again, from the cache", lambda: csma_bianchi(context).tables())
     print(f"  {'memory added':38} {_peak_MB() - before_MB:8.0f} MB")
     print(
         f"  {'links affected by one, on average':38} {len(related.links) / related.link_count:8.0f}"
@@ -78,7 +80,8 @@ def refresh(rows: int, columns: int, transfers: int, hops: int) -> None:
     from ncsim_wifi.interference_models.csma_bianchi import csma_bianchi
 
     network = grid(rows, columns)
-    session = csma_bianchi(BuildContext(network, cache=ModelCache())).open_session()
+    model = csma_bianchi(BuildContext(network, cache=ModelCache()))
+    session = session_for(model, model.tables(), 0)
     traffic = Traffic(network, session, hops)
     for _ in range(transfers):
         traffic.start()

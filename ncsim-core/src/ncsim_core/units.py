@@ -58,4 +58,4 @@ def service_time_us(remaining_MB: float, rate_MBps: float) -> Instant:
     exact_us = remaining_MB / rate_MBps * MICROSECONDS_PER_SECOND - COMPLETION_TOLERANCE_us
     if exact_us > HORIZON_us:
         return BEYOND_us
-    return ceil(exact_us) if exact_us > 0 else 0
+    return ceil(exact_us)  # of more than -1, so never negative

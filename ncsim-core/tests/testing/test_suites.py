@@ -21,7 +21,7 @@ NUMBER_OF_CHECKS = {
     "scheduler": 14,
     "routing_model": 17,
     "link_model": 13,
-    "interference_model": 27,
+    "interference_model": 28,
     "queue_model": 14,
     "dag_source": 13,
 }

@@ -7,6 +7,7 @@ on the sum takes the place of the logarithm in the SINR, and of each rate of the
 
 from bisect import bisect_left
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from ncsim_core.network import LinkIndex
@@ -58,10 +59,20 @@ class Levels:
 
     def hidden_factor(self, link: LinkIndex, hidden_units: int) -> float:
         """Return what hidden interferers leave of the clean rate; 1 for an unusable link."""
-        clean_Mbps = self.rates_Mbps[link][0]
-        if clean_Mbps <= 0.0:
-            return 1.0
-        return hidden_factor(self.effective_rate_Mbps(link, hidden_units), clean_Mbps)
+        return self.hidden_factors[link][self.level(link, hidden_units)]
+
+    @cached_property
+    def hidden_factors(self) -> tuple[tuple[float, ...], ...]:
+        """Return by link and level what hidden interferers leave of the clean rate."""
+        by_rates = {rates: _hidden_factors(rates) for rates in set(self.rates_Mbps)}
+        return tuple(by_rates[rates] for rates in self.rates_Mbps)
+
+
+def _hidden_factors(rates_Mbps: tuple[float, ...]) -> tuple[float, ...]:
+    clean_Mbps = rates_Mbps[0]
+    if clean_Mbps <= 0.0:
+        return (1.0,) * len(rates_Mbps)
+    return tuple(hidden_factor(rate_Mbps, clean_Mbps) for rate_Mbps in rates_Mbps)
 
 
 def levels_of(signals: Propagation, radio: Radio) -> Levels:

@@ -1,5 +1,9 @@
 """Factors by rates and number of stations, tabulated as they come up."""
 
+from functools import partial
+
+from ncsim_core.contracts.interference_tables import ShareRow
+
 from ncsim_wifi.levels import Levels
 from ncsim_wifi.mac.timing import Timing
 from ncsim_wifi.service import combined_factor
@@ -16,29 +20,23 @@ class Shares:
     def __init__(self, timing: Timing, outage_floor_factor: float = 0.0) -> None:
         self._timing = timing
         self.floor = outage_floor_factor
-        self._rows: dict[tuple[float, float], list[float]] = {}
+        self._rows: dict[tuple[float, float], ShareRow] = {}
 
-    def row(self, clean_Mbps: float, effective_Mbps: float) -> list[float]:
-        """Return the factors by number of stations that have come up; index 0 has no meaning.
-
-        The list is the same whenever the rates are the same, and grows.
-        """
-        return self._rows.setdefault((clean_Mbps, effective_Mbps), [0.0])
-
-    def grow(
-        self, row: list[float], clean_Mbps: float, effective_Mbps: float, stations: int
-    ) -> None:
-        """Add factors to a row, up to ``stations``."""
-        while len(row) <= stations:
-            row.append(self._factor(effective_Mbps, clean_Mbps, len(row)))
+    def row(self, clean_Mbps: float, effective_Mbps: float) -> ShareRow:
+        """Return the factors by number of stations, the same object whenever the rates are."""
+        rates = clean_Mbps, effective_Mbps
+        row = self._rows.get(rates)
+        if row is None:
+            is_outage = effective_Mbps <= 0.0 < clean_Mbps
+            factor_of = partial(self._factor, effective_Mbps, clean_Mbps)
+            row = self._rows[rates] = ShareRow(factor_of, is_constant=is_outage)
+        return row
 
     def factor(self, clean_Mbps: float, effective_Mbps: float, stations: int) -> float:
         """Return the factor of one link, in [0, 1]."""
-        row = self.row(clean_Mbps, effective_Mbps)
-        self.grow(row, clean_Mbps, effective_Mbps, stations)
-        return row[stations]
+        return self.row(clean_Mbps, effective_Mbps).factor(stations)
 
-    def rows_by_level(self, levels: Levels) -> list[list[list[float]]]:
+    def rows_by_level(self, levels: Levels) -> list[list[ShareRow]]:
         """Return by link and level the row of factors."""
         rows = {
             rates: [self.row(rates[0], rate) for rate in rates] for rates in set(levels.rates_Mbps)

@@ -7,13 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ncsim_core.contracts.interference_model import PlainSession
+from ncsim_core.engine.sessions import array_session, loads
+from ncsim_core.engine.sessions.array_session import ArraySession
+from ncsim_core.engine.sessions.choice import loads_of, session_for
+from ncsim_core.engine.sessions.kernel_session import KernelSession
+from ncsim_core.engine.sessions.row_session import RowSession
 from ncsim_core.generators.paper import paper_grid, parallel_links
 from ncsim_core.testing.builders import make_context
-from ncsim_wifi.influence import Influence
-from ncsim_wifi.interference_models import array_session, effective_rate
-from ncsim_wifi.interference_models.array_session import ArraySession
 from ncsim_wifi.interference_models.csma_bianchi import csma_bianchi
-from ncsim_wifi.interference_models.row_session import RowSession
 from ncsim_wifi.validation import fluid
 from ncsim_wifi.validation.scenes import Scene
 
@@ -42,23 +43,20 @@ def test_factors_are_those_of_the_formulas_taken_literally(scene, chosen):
     assert factors.tolist() == pytest.approx(expected, rel=1e-12)
 
 
+SESSIONS = {"rows": RowSession, "matrix": ArraySession, "lists": ArraySession}
+SESSIONS["kernels"] = KernelSession
+
+
+def session_on(model, form="rows"):
+    return SESSIONS[form](loads_of(model.tables()))
+
+
 class TestSessions:
-    @pytest.fixture(params=["rows", "matrix", "lists", "plain"])
+    @pytest.fixture(params=SESSIONS)
     def form(self, request, monkeypatch):
-        if request.param != "rows":
-            monkeypatch.setattr(effective_rate, "MAX_LINKS_OF_ROW_SESSION", 0)
         if request.param == "lists":
             monkeypatch.setattr(array_session, "MAX_LINKS_OF_MATRIX", 0)
-        if request.param == "plain":
-            monkeypatch.setattr(Influence, "fits", property(lambda _: False))
         return request.param
-
-    def test_each_form_is_what_it_should_be(self, form):
-        kinds = {"rows": RowSession, "plain": PlainSession}
-
-        session = model_of(paper_grid(3)).open_session()
-
-        assert type(session) is kinds.get(form, ArraySession)
 
     @pytest.mark.parametrize("options", [{}, {"outage_floor_factor": 0.02}])
     @pytest.mark.parametrize("rf", [{}, {"rts_cts": True}, {"tx_power_dBm": 12.0}])
@@ -66,30 +64,36 @@ class TestSessions:
         network = paper_grid(6)
         model = model_of(network, rf, **options)
         draw = random.Random(5)
-        steps = 10 if form == "plain" else 60
-        history = [draw.sample(range(len(network.links)), draw.randint(1, 9)) for _ in range(steps)]
+        history = [draw.sample(range(len(network.links)), draw.randint(1, 9)) for _ in range(60)]
 
-        follow(model, history)
+        follow(model, history, form)
 
     def test_hundreds_of_links_at_one_place_are_counted_right(self, form):
         network = parallel_links(260, 0.25)
 
-        follow(model_of(network), [list(range(260)), [3, 4, 5], [3, 9]])
+        follow(model_of(network), [list(range(260)), [3, 4, 5], [3, 9]], form)
+
+
+def test_tables_too_large_for_sums_of_64_bits_fall_back_to_the_plain_form(monkeypatch):
+    model = model_of(paper_grid(3))
+    monkeypatch.setattr(loads, "LOAD_BITS", 40)
+
+    assert type(session_for(model, model.tables(), 1)) is PlainSession
 
 
 @settings(max_examples=60)
-@given(SCENES, TOGGLES)
-def test_sessions_equal_global_refresh_bit_by_bit(scene, toggles):
+@given(SCENES, TOGGLES, st.sampled_from(["rows", "matrix", "kernels"]))
+def test_sessions_equal_global_refresh_bit_by_bit(scene, toggles, form):
     count = len(scene.senders_m)
     model = model_of(scene.network())
     history = [[link for link in step if link < count] for step in toggles]
 
-    follow(model, history)
+    follow(model, history, form)
 
 
-def follow(model, history):
+def follow(model, history, form):
     """Toggle links; after each step factors must equal those of asking for all links anew."""
-    session, factors = model.open_session(), {}
+    session, factors = session_on(model, form), {}
     for step in history:
         off = [link for link in step if link in factors]
         on = [link for link in step if link not in factors]
@@ -104,9 +108,10 @@ def follow(model, history):
     assert list(session.competition(active)) == list(model.competition(active, active))
 
 
-def test_switching_on_and_off_again_leaves_no_trace():
+@pytest.mark.parametrize("form", SESSIONS)
+def test_switching_on_and_off_again_leaves_no_trace(form):
     model = model_of(paper_grid(4))
-    session = model.open_session()
+    session = session_on(model, form)
     session.update([0, 1, 2], [])
     before = list(session.competition([0, 1, 2]))
 
@@ -122,7 +127,7 @@ def test_switching_on_and_off_again_leaves_no_trace():
 
 def test_a_model_survives_pickling_with_its_caches_warm():
     model = model_of(paper_grid(3))
-    model.open_session().update([0, 1], [])
+    session_on(model).update([0, 1], [])
 
     copy = pickle.loads(pickle.dumps(model))
 

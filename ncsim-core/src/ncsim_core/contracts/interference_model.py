@@ -1,23 +1,27 @@
 """How much does concurrent traffic slow a link?
 
-A model may be written in either of two forms; the base class derives the second from the
-first, and the conformance kit proves them equal.
+A model may be written in one of three forms, of which each goes with less calls into the model than
+the one before; the conformance kit proves equal those that a model has.
 
 * Plain, the easiest: ``factors`` and ``reach``, pure functions of their arguments.
 * Incremental: ``open_session`` returns an object that the engine owns for one run and tells
   which links were switched on and off.
+* Declarative: ``tables`` gives the model as data, and the engine's own kernels do the rest, with
+  ``factors`` for those who ask about links alone.
 
-In both, a transfer gets the least share on its route, each link shared equally. A model that knows
+In all, a transfer gets the least share on its route, each link shared equally. A model that knows
 better what a whole route carries, because relays forward only what they receive, sets
 ``decides_routes`` and answers ``route_rates`` instead.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
 
 from typing_extensions import override
 
+from ncsim_core.contracts.interference_tables import InterferenceTables
 from ncsim_core.network import LinkIndex, Route
 
 if TYPE_CHECKING:
@@ -40,6 +44,9 @@ class Competition(NamedTuple):
 
 
 NO_COMPETITION: Final = Competition()
+
+competition_of: Final = partial(tuple.__new__, Competition)
+"""Makes a ``Competition`` of a tuple of its fields, in a third of the time of naming them."""
 
 
 class RouteRates(NamedTuple):
@@ -111,8 +118,12 @@ class InterferenceModel(ABC):
         return [NO_COMPETITION] * len(links)
 
     def open_session(self) -> "InterferenceSession":
-        """Return a fresh session for one run."""
+        """Return a fresh session for one run; not asked of a model that has ``tables``."""
         return PlainSession(self)
+
+    def tables(self) -> InterferenceTables | None:
+        """Return the model as data, the same object each time, or ``None`` if it is none."""
+        return None
 
 
 class InterferenceSession(ABC):

@@ -71,10 +71,11 @@ def credit_work(moves: Iterable[Move], state: State) -> None:
     """Credit each transfer what it was served since it was last credited (``eq:progress``)."""
     now_us = state.now_us
     for _, flow, _, _ in moves:
-        elapsed_us = now_us - flow.credited_us
-        if elapsed_us > 0 and flow.rate_MBps > 0:
+        if flow.rate_MBps > 0:
+            elapsed_us = now_us - flow.credited_us
             due_MB = flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
-            flow.remaining_MB -= min(flow.remaining_MB, due_MB)
+            left_MB = flow.remaining_MB - due_MB
+            flow.remaining_MB = left_MB if left_MB > 0 else 0.0
         flow.credited_us = now_us
 
 

@@ -7,7 +7,8 @@ the file, so that the engine works on lists.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import repeat
 from typing import NamedTuple
 
 from ncsim_core.contracts.routing_model import RouteTable
@@ -15,7 +16,7 @@ from ncsim_core.engine.boundary import checked_injections
 from ncsim_core.models import Models
 from ncsim_core.network import Network
 from ncsim_core.units import Instant
-from ncsim_core.workflow import DAG, Dependency, Injection, Task
+from ncsim_core.workflow import DAG, Injection, Task
 
 
 class TaskEntry(NamedTuple):
@@ -189,19 +190,17 @@ def _ranks(dags: Sequence[DAG]) -> list[int]:
 def _dependency_entries(
     dag_number: int, dag: DAG, first_task: int, first_dependency: int, ranks: Sequence[int]
 ) -> list[DependencyEntry]:
-    index = dag.task_index
-
-    def entry(number: int, dependency: Dependency) -> DependencyEntry:
-        return DependencyEntry(
-            number,
-            dag_number,
-            first_task + index[dependency.source],
-            first_task + index[dependency.target],
-            dependency.data_size_MB,
-            ranks[number],
-        )
-
-    return [entry(first_dependency + i, each) for i, each in enumerate(dag.dependencies)]
+    index, dependencies = dag.task_index, dag.dependencies
+    numbers = range(first_dependency, first_dependency + len(dependencies))
+    fields = zip(
+        numbers,
+        repeat(dag_number),
+        [first_task + index[each.source] for each in dependencies],
+        [first_task + index[each.target] for each in dependencies],
+        [each.data_size_MB for each in dependencies],
+        [ranks[number] for number in numbers],
+    )
+    return list(map(partial(tuple.__new__, DependencyEntry), fields))
 
 
 def _task_entries(
@@ -212,7 +211,6 @@ def _task_entries(
     for dependency in dependencies:
         outgoing[dependency.source - first_task].append(dependency.number)
         incoming_count[dependency.target - first_task] += 1
-    return [
-        TaskEntry(first_task + i, dag_number, task, tuple(outgoing[i]), incoming_count[i])
-        for i, task in enumerate(dag.tasks)
-    ]
+    numbers = range(first_task, first_task + len(dag.tasks))
+    fields = zip(numbers, repeat(dag_number), dag.tasks, map(tuple, outgoing), incoming_count)
+    return list(map(partial(tuple.__new__, TaskEntry), fields))

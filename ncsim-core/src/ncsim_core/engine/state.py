@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ncsim_core.engine.boundary import CheckedQueue, asked
 from ncsim_core.engine.event_queue import EventQueue
-from ncsim_core.engine.sessions import session_of
+from ncsim_core.engine.sessions.choice import session_of
 
 if TYPE_CHECKING:
     from ncsim_core.contracts.interference_model import InterferenceSession

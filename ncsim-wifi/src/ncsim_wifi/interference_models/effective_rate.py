@@ -5,24 +5,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from ncsim_core.contracts.interference_model import (
-    Competition,
-    InterferenceModel,
-    InterferenceSession,
-    PlainSession,
-)
+from ncsim_core.contracts.interference_model import Competition, InterferenceModel
+from ncsim_core.contracts.interference_tables import InterferenceTables
 from ncsim_core.network import LinkIndex
 from typing_extensions import override
 
 from ncsim_wifi.conflict import Relations
-from ncsim_wifi.influence import Influence, influence_of
-from ncsim_wifi.interference_models.array_session import ArraySession
-from ncsim_wifi.interference_models.row_session import RowSession
 from ncsim_wifi.levels import Levels
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.shares import Shares
-
-MAX_LINKS_OF_ROW_SESSION = 150  # above, arrays are faster; see benchmarks/wifi_precomputation.py
 
 
 @dataclass(frozen=True)
@@ -105,13 +96,18 @@ class EffectiveRateModel(InterferenceModel):
         ]
 
     @override
-    def open_session(self) -> InterferenceSession:
-        if not self._influence.fits:  # tens of thousands of links all within earshot
-            return PlainSession(self)
-        if self._related.link_count <= MAX_LINKS_OF_ROW_SESSION:
-            return RowSession(self._influence, self._levels, self._shares)
-        return ArraySession(self._influence, self._levels, self._shares)
+    def tables(self) -> InterferenceTables:
+        return self._tables
 
     @cached_property
-    def _influence(self) -> Influence:
-        return influence_of(self._related, self._levels)
+    def _tables(self) -> InterferenceTables:
+        related, levels = self._related, self._levels
+        return InterferenceTables(
+            starts=related.starts,
+            links=related.links,
+            is_conflict=related.is_conflict,
+            hidden_units=levels.units(related.links, related.power_mW),
+            limits=levels.limits,
+            shares=self._shares.rows_by_level(levels),
+            hidden_factors=levels.hidden_factors,
+        )

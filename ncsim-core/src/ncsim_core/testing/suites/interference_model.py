@@ -11,6 +11,7 @@ from ncsim_core.contracts.interference_model import (
     InterferenceSession,
     PlainSession,
 )
+from ncsim_core.engine.sessions.choice import sessions_on
 from ncsim_core.engine.setup import Reach
 from ncsim_core.network import LinkIndex
 from ncsim_core.testing import strategies
@@ -92,14 +93,20 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
     def check_session_equals_global_refresh(self, subject: Subject, case: Case) -> None:
         """A session gives what asking for every active link after every change gives."""
         model = _model(subject, case)
-        session = _Followed(model.open_session())
-        slow = _Followed(PlainSession(model, is_global=True))
-        for on, off in _switches(case):
-            expected = slow.update(on, off)
-            assert session.update(on, off) == expected, f"after {on} on, {off} off"
-            links = sorted(expected)
-            told = list(session.session.competition(links))
-            assert told == list(model.competition(links, links)), f"competition of {links}"
+        _follow(model.open_session(), model, case)
+
+    @check()
+    def check_tables_equal_plain_form(self, subject: Subject, case: Case) -> None:
+        """If it has tables, each way to work on them gives what the plain form gives."""
+        model = _model(subject, case)
+        tables = model.tables()
+        if tables is None:
+            return
+        fault = tables.fault(len(case.network.links))
+        assert fault is None, f"its tables have {fault}"
+        assert model.tables() is tables, "tables() makes new tables each time"
+        for session in sessions_on(tables):
+            _follow(session, model, case)
 
     @check()
     def check_local_refresh_equals_global(self, subject: Subject, run: Case) -> None:
@@ -143,6 +150,17 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
                 k for k, pair in enumerate(zip(before, after, strict=True)) if pair[1] > pair[0]
             ]
             assert not better, f"link {extra} raises the factors of {better}"
+
+
+def _follow(session: InterferenceSession, model: InterferenceModel, case: Case) -> None:
+    """Check that a session gives what asking for every active link gives, step by step."""
+    fast, slow = _Followed(session), _Followed(PlainSession(model, is_global=True))
+    for on, off in _switches(case):
+        expected = slow.update(on, off)
+        assert fast.update(on, off) == expected, f"{type(session).__name__}: {on} on, {off} off"
+        links = sorted(expected)
+        told = list(session.competition(links))
+        assert told == list(model.competition(links, links)), f"competition of {links}"
 
 
 class _Followed:

@@ -50,6 +50,7 @@ CLASSES = {
         "reach_holds_what_changed": (),
         "out_of_reach_nothing_changes": (),
         "session_equals_global_refresh": (),
+        "tables_equal_plain_form": (),
         "local_refresh_equals_global": (),
         "sessions_do_not_meet": (),
         "competition_can_be_explained": (),

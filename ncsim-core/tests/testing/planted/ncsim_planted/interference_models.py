@@ -7,6 +7,7 @@ from ncsim_core.contracts.interference_model import (
     PlainSession,
     RouteRates,
 )
+from ncsim_core.contracts.interference_tables import InterferenceTables, ShareRow
 from ncsim_core.testing.toys import ToyRelays
 
 
@@ -71,6 +72,24 @@ class Forgetful(PlainSession):
 class SessionEqualsGlobalRefresh(TakeTurns):
     def open_session(self):
         return Forgetful(self)
+
+
+class TablesEqualPlainForm(TakeTurns):
+    """Its tables count a link among its own contenders."""
+
+    def tables(self):
+        rows = [sorted(near | {link}) for link, near in enumerate(self.near)]
+        links = np.array([link for row in rows for link in row], np.int32)
+        shares = [ShareRow(lambda stations: 1 / stations)]
+        return InterferenceTables(
+            starts=np.cumsum([0, *map(len, rows)]),
+            links=links,
+            is_conflict=np.ones(len(links), np.bool_),
+            hidden_units=np.ones(len(links), np.int64),
+            limits=[() for _ in rows],
+            shares=[shares for _ in rows],
+            hidden_factors=[(1.0,) for _ in rows],
+        )
 
 
 class LocalRefreshEqualsGlobal(OutOfReachNothingChanges):

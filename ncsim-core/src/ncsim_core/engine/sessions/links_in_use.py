@@ -1,4 +1,4 @@
-"""Which session of the interference model a run works with."""
+"""The session of a model that decides routes: only which links are in use."""
 
 from collections.abc import Sequence
 
@@ -8,28 +8,12 @@ from ncsim_core.contracts.interference_model import (
     Competition,
     InterferenceModel,
     InterferenceSession,
-    PlainSession,
-    Unaffected,
 )
-from ncsim_core.engine.boundary import CheckedSession, asked
-from ncsim_core.engine.setup import Setup
 from ncsim_core.network import LinkIndex
 
 
-def session_of(setup: Setup) -> InterferenceSession | None:
-    """Return a fresh session for one run, ``None`` if no link ever affects another."""
-    model = setup.models.interference
-    who = setup.models.identity("interference_model")
-    if model.decides_routes:
-        return CheckedSession(LinksInUse(model), who)
-    if setup.is_global:
-        return CheckedSession(PlainSession(model, is_global=True), who)
-    session = asked(who, model.open_session)
-    return None if isinstance(session, Unaffected) else CheckedSession(session, who)
-
-
 class LinksInUse(InterferenceSession):
-    """The session of a model that decides routes: only which links are in use.
+    """Knows what links are up against and never asks for a factor.
 
     Args:
         model: The model that explains competition.

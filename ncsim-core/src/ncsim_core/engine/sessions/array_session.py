@@ -1,22 +1,21 @@
-"""The incremental form for large networks: arrays over all links.
+"""The session for large networks: arrays over all links.
 
 A link's factor is looked up again only when its load leaves the window in which neither its
 level nor its number of contenders changes; so one comparison over all links finds the few
 that have to be looked at.
 """
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from ncsim_core.contracts.interference_model import Competition, InterferenceSession
-from ncsim_core.network import LinkIndex
+from numpy.typing import NDArray
 from typing_extensions import override
 
-from ncsim_wifi.influence import Influence
-from ncsim_wifi.levels import Levels
-from ncsim_wifi.quantities import IntArray
-from ncsim_wifi.shares import Shares
+from ncsim_core.engine.sessions.loads import Loads
+from ncsim_core.engine.sessions.tabled_session import TabledSession
+from ncsim_core.network import LinkIndex
 
 MAX_LINKS_OF_MATRIX = 2500  # 50 MB; adding a whole row is faster than adding to some places
 ANYTHING = np.iinfo(np.uint64).max
@@ -38,22 +37,18 @@ class Window(NamedTuple):
     width: int
 
 
-class ArraySession(InterferenceSession):
+class ArraySession(TabledSession):
     """Keeps the load of every link, and window and factor of every active one.
 
     Args:
-        influence: What each link adds to the loads of others.
-        levels: Effective rates under hidden interference.
-        shares: Factors by rates and number of stations.
+        loads: The tables, as numbers to add.
     """
 
-    def __init__(self, influence: Influence, levels: Levels, shares: Shares) -> None:
-        count = influence.related.link_count
-        self._influence = influence
-        self._levels = levels
-        self._shares = shares
-        self._share_rows = shares.rows_by_level(levels)
-        self._matrix = influence.matrix if count <= MAX_LINKS_OF_MATRIX else None
+    def __init__(self, loads: Loads) -> None:
+        super().__init__(loads)
+        count = loads.tables.link_count
+        self._tables = loads.tables
+        self._matrix = loads.matrix if count <= MAX_LINKS_OF_MATRIX else None
         self._load = np.zeros(count, np.int64)
         self._mask = np.full(count, ALL_BITS)
         self._window_start = np.zeros(count, np.int64)
@@ -64,6 +59,8 @@ class ArraySession(InterferenceSession):
     def update(
         self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
+        self._toggle(on)
+        self._toggle(off)
         for link in off:
             self._add(link, -1)
             self._window_width[link] = ANYTHING
@@ -78,24 +75,24 @@ class ArraySession(InterferenceSession):
 
     def _add(self, link: LinkIndex, sign: int) -> None:
         if self._matrix is None:
-            row = self._influence.related.row(link)
-            places = self._influence.related.links[row]
-            self._load[places] += sign * self._influence.increments[row]
+            row = slice(int(self._tables.starts[link]), int(self._tables.starts[link + 1]))
+            self._load[self._tables.links[row]] += sign * self._loads.increments[row]
         elif sign > 0:
             self._load += self._matrix[link]
         else:
             self._load -= self._matrix[link]
 
-    def _moved(self) -> IntArray:
+    def _moved(self) -> "NDArray[np.intp]":
         """Return the active links whose load has left its window, in link order.
 
         Below the window the difference is negative, which as an unsigned number is huge.
         """
         offset = self._load & self._mask
         offset -= self._window_start
-        return np.flatnonzero(offset.view(np.uint64) > self._window_width)
+        moved: NDArray[np.intp] = np.flatnonzero(offset.view(np.uint64) > self._window_width)
+        return moved
 
-    def _look_up(self, moved: IntArray) -> tuple[list[LinkIndex], list[float]]:
+    def _look_up(self, moved: "NDArray[np.intp]") -> tuple[list[LinkIndex], list[float]]:
         links, factors, windows = [], [], []
         for link, load in zip(moved.tolist(), self._load[moved].tolist(), strict=True):
             factor, window = self._factor_and_window(link, load)
@@ -112,30 +109,20 @@ class ArraySession(InterferenceSession):
 
     def _factor_and_window(self, link: LinkIndex, load: int) -> tuple[float, Window]:
         """Return the factor at a load, and the window of loads where it stays the same."""
-        influence, limits = self._influence, self._levels.limits[link]
-        contenders, hidden_units = influence.contenders(load), influence.hidden_units(load)
-        level = self._levels.level(link, hidden_units)
-        row = self._share_rows[link][level]
-        if contenders + 1 >= len(row):
-            rates_Mbps = self._levels.rates_Mbps[link]
-            self._shares.grow(row, rates_Mbps[0], rates_Mbps[level], contenders + 1)
+        count_shift, units_mask = self._loads.count_shift, self._loads.units_mask
+        limits = self._tables.limits[link]
+        contenders = load >> count_shift
+        level = bisect_left(limits, load & units_mask)
+        share_row = self._tables.shares[link][level]
         least_units = limits[level - 1] + 1 if level else 0
-        if level == len(limits):  # in outage the number of contenders does not matter
-            window = Window(influence.units_mask, least_units, influence.units_mask)
+        width = (limits[level] if level < len(limits) else units_mask) - least_units
+        if share_row.is_constant:  # the number of contenders does not matter
+            window = Window(units_mask, least_units, width)
         else:
-            start = influence.load(contenders, least_units)
-            window = Window(ALL_BITS, start, limits[level] - least_units)
-        return row[contenders + 1], window
+            window = Window(ALL_BITS, (contenders << count_shift) + least_units, width)
+        return share_row.factor(contenders + 1), window
 
     @override
-    def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
-        active = np.fromiter(self._factor, np.int64, len(self._factor))
-        return [self._competition_of(link, active) for link in links]
-
-    def _competition_of(self, link: LinkIndex, active: IntArray) -> Competition:
-        load = int(self._load[link])
-        return Competition(
-            self._influence.contenders(load),
-            self._influence.interferers(link, active, load),
-            self._levels.hidden_factor(link, self._influence.hidden_units(load)),
-        )
+    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
+        loads: list[int] = self._load[list(links)].tolist()
+        return loads

@@ -1,0 +1,1 @@
+"""Sessions of interference models, and who works with which."""

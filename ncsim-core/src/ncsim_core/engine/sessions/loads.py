@@ -1,0 +1,93 @@
+"""What switching one link does to the others, as one number to add.
+
+Contenders and hidden sum of a link are packed into one whole number, its *load*: the number of
+contenders above bit ``count_shift``, the hidden sum below it. A link that is switched adds one
+precomputed number to the load of each link that it affects.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ncsim_core.contracts.interference_tables import InterferenceTables
+from ncsim_core.network import LinkIndex
+
+LOAD_BITS = 62  # of a signed 64-bit number, one spare
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """Tables as numbers to add to loads.
+
+    Args:
+        tables: Which links affect which.
+        increments: What each entry adds, in the order of ``tables.links``.
+        count_shift: How many bits of a load the hidden sum has.
+        fits: Whether no set of active links can overflow a load.
+    """
+
+    tables: InterferenceTables
+    increments: NDArray[np.int64]
+    count_shift: int
+    fits: bool
+
+    @property
+    def units_mask(self) -> int:
+        """Return the bits of a load that hold the hidden sum."""
+        return (1 << self.count_shift) - 1
+
+    @cached_property
+    def matrix(self) -> NDArray[np.int64]:
+        """Return the increments by (switched link, other link), for networks of some size."""
+        count = self.tables.link_count
+        matrix = np.zeros((count, count), np.int64)
+        matrix[self._origins, self.tables.links] = self.increments
+        return matrix
+
+    @cached_property
+    def rows(self) -> list[list[int]]:
+        """Return the increments by (switched link, other link), for small networks."""
+        rows: list[list[int]] = self.matrix.tolist()
+        return rows
+
+    @cached_property
+    def _origins(self) -> NDArray[np.intp]:
+        return np.repeat(np.arange(self.tables.link_count), np.diff(self.tables.starts))
+
+    @cached_property
+    def _affecting(self) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
+        """Return where the links that affect each link begin, and these links."""
+        by_affected = np.argsort(self.tables.links, kind="stable")
+        counts = np.bincount(self.tables.links, minlength=self.tables.link_count)
+        return np.concatenate([[0], np.cumsum(counts)]), self._origins[by_affected]
+
+    @cached_property
+    def _masks(self) -> dict[LinkIndex, int]:
+        return {}
+
+    def affecting_mask(self, link: LinkIndex) -> int:
+        """Return the links that affect one, as the bits of a whole number."""
+        mask = self._masks.get(link)
+        if mask is None:
+            starts, origins = self._affecting
+            flags = np.zeros(self.tables.link_count, np.uint8)
+            flags[origins[starts[link] : starts[link + 1]]] = 1
+            packed = np.packbits(flags, bitorder="little").tobytes()
+            mask = self._masks[link] = int.from_bytes(packed, "little")
+        return mask
+
+
+def loads_from(tables: InterferenceTables) -> Loads:
+    """Return the loads that tables amount to."""
+    hidden = ~tables.is_conflict
+    count = tables.link_count
+    most_hidden = int(np.bincount(tables.links[hidden], minlength=count).max(initial=0))
+    most_contenders = int(np.bincount(tables.links[~hidden], minlength=count).max(initial=0))
+    most_units = int(tables.hidden_units[hidden].max(initial=0))
+    count_shift = most_units.bit_length() + most_hidden.bit_length()
+    increments = tables.hidden_units.astype(np.int64)
+    increments[~hidden] = 1 << min(count_shift, LOAD_BITS)
+    fits = count_shift + most_contenders.bit_length() <= LOAD_BITS
+    return Loads(tables, increments, count_shift, fits)
