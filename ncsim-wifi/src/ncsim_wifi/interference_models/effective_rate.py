@@ -15,6 +15,8 @@ from ncsim_wifi.levels import Levels
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.shares import Shares
 
+ENTRIES_PER_BLOCK = 1 << 20  # so that no second array of all entries is needed
+
 
 @dataclass(frozen=True)
 class Tally:
@@ -45,6 +47,16 @@ def tally(active: Collection[LinkIndex], related: Relations, levels: Levels) -> 
         counts.interferers[victims] += 1
         counts.hidden_units[victims] += levels.units(victims, related.power_mW[row][is_hidden])
     return counts
+
+
+def hidden_units(related: Relations, levels: Levels) -> IntArray:
+    """Return the power of each entry at the affected receiver in its quantum, 0 for conflicts."""
+    units = np.zeros(len(related.links), np.int64)
+    for start in range(0, len(units), ENTRIES_PER_BLOCK):
+        block = slice(start, start + ENTRIES_PER_BLOCK)
+        hidden = np.flatnonzero(~related.is_conflict[block]) + start
+        units[hidden] = levels.units(related.links[hidden], related.power_mW[hidden])
+    return units
 
 
 class EffectiveRateModel(InterferenceModel):
@@ -106,7 +118,7 @@ class EffectiveRateModel(InterferenceModel):
             starts=related.starts,
             links=related.links,
             is_conflict=related.is_conflict,
-            hidden_units=levels.units(related.links, related.power_mW),
+            hidden_units=hidden_units(related, levels),
             limits=levels.limits,
             shares=self._shares.rows_by_level(levels),
             hidden_factors=levels.hidden_factors,

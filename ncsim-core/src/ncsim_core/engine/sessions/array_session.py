@@ -76,7 +76,7 @@ class ArraySession(TabledSession):
     def _add(self, link: LinkIndex, sign: int) -> None:
         if self._matrix is None:
             row = slice(int(self._tables.starts[link]), int(self._tables.starts[link + 1]))
-            self._load[self._tables.links[row]] += sign * self._loads.increments[row]
+            self._load[self._tables.links[row]] += sign * self._loads.increments(row)
         elif sign > 0:
             self._load += self._matrix[link]
         else:
@@ -115,7 +115,8 @@ class ArraySession(TabledSession):
         level = bisect_left(limits, load & units_mask)
         share_row = self._tables.shares[link][level]
         least_units = limits[level - 1] + 1 if level else 0
-        width = (limits[level] if level < len(limits) else units_mask) - least_units
+        most_units = min(limits[level], units_mask) if level < len(limits) else units_mask
+        width = most_units - least_units
         if share_row.is_constant:  # the number of contenders does not matter
             window = Window(units_mask, least_units, width)
         else:

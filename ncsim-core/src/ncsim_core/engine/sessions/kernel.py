@@ -26,7 +26,8 @@ class Arrays(NamedTuple):
     Args:
         starts: Where rows begin.
         affected: Links affected, row by row.
-        increments: What is added to their loads.
+        is_conflict: Whether they get another contender, or hidden power.
+        hidden_units: How much.
         count_shift: How many bits of a load the hidden sum has.
         limits: By link and level, the greatest hidden sum; the greatest number after the last.
         share_rows: By link and level, the row in ``shares``.
@@ -35,7 +36,8 @@ class Arrays(NamedTuple):
 
     starts: IntArray
     affected: NDArray[np.int32]
-    increments: IntArray
+    is_conflict: NDArray[np.bool_]
+    hidden_units: IntArray
     count_shift: int
     limits: IntArray
     share_rows: IntArray
@@ -85,6 +87,8 @@ def switch_links(switched: IntArray, on_count: int, arrays: Arrays, progress: Pr
         progress: Changed.
     """
     load, stamps, touched = progress.load, progress.stamps, progress.touched
+    is_conflict, hidden_units = arrays.is_conflict, arrays.hidden_units
+    contender = 1 << arrays.count_shift
     stamp = progress.counters[STAMP] + 1
     count = 0
     for k in range(len(switched)):
@@ -98,7 +102,7 @@ def switch_links(switched: IntArray, on_count: int, arrays: Arrays, progress: Pr
         sign = 1 if k < on_count else -1
         for entry in range(arrays.starts[switched[k]], arrays.starts[switched[k] + 1]):
             link = arrays.affected[entry]
-            load[link] += sign * arrays.increments[entry]
+            load[link] += sign * (contender if is_conflict[entry] else hidden_units[entry])
             if 0 <= stamps[link] < stamp:
                 stamps[link] = stamp
                 touched[count] = link

@@ -80,7 +80,8 @@ def _arrays_of(loads: Loads) -> tuple[list[ShareRow], kernel.Arrays]:
             kernel.Arrays(
                 starts=tables.starts,
                 affected=tables.links,
-                increments=loads.increments,
+                is_conflict=tables.is_conflict,
+                hidden_units=tables.hidden_units,
                 count_shift=loads.count_shift,
                 limits=_padded([(*each, GREATEST) for each in tables.limits]),
                 share_rows=_share_rows(tables, rows),

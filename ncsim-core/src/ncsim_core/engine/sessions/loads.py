@@ -23,13 +23,11 @@ class Loads:
 
     Args:
         tables: Which links affect which.
-        increments: What each entry adds, in the order of ``tables.links``.
         count_shift: How many bits of a load the hidden sum has.
         fits: Whether no set of active links can overflow a load.
     """
 
     tables: InterferenceTables
-    increments: NDArray[np.int64]
     count_shift: int
     fits: bool
 
@@ -38,12 +36,22 @@ class Loads:
         """Return the bits of a load that hold the hidden sum."""
         return (1 << self.count_shift) - 1
 
+    @property
+    def contender(self) -> int:
+        """Return what a contender adds to a load; a hidden interferer adds its power."""
+        return 1 << self.count_shift
+
+    def increments(self, entries: slice) -> NDArray[np.int64]:
+        """Return what some entries of the tables add to loads."""
+        tables = self.tables
+        return np.where(tables.is_conflict[entries], self.contender, tables.hidden_units[entries])
+
     @cached_property
     def matrix(self) -> NDArray[np.int64]:
         """Return the increments by (switched link, other link), for networks of some size."""
         count = self.tables.link_count
         matrix = np.zeros((count, count), np.int64)
-        matrix[self._origins, self.tables.links] = self.increments
+        matrix[self._origins, self.tables.links] = self.increments(slice(None))
         return matrix
 
     @cached_property
@@ -87,7 +95,5 @@ def loads_from(tables: InterferenceTables) -> Loads:
     most_contenders = int(np.bincount(tables.links[~hidden], minlength=count).max(initial=0))
     most_units = int(tables.hidden_units[hidden].max(initial=0))
     count_shift = most_units.bit_length() + most_hidden.bit_length()
-    increments = tables.hidden_units.astype(np.int64)
-    increments[~hidden] = 1 << min(count_shift, LOAD_BITS)
     fits = count_shift + most_contenders.bit_length() <= LOAD_BITS
-    return Loads(tables, increments, count_shift, fits)
+    return Loads(tables, count_shift, fits)
