@@ -19,6 +19,13 @@ FLAGS = [
 ]  # fmt: skip
 """--disable-gpu: with SwiftShader a canvas is ten times slower."""
 
+AXE = ROOT / "ncsim-viz" / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+CHECK = """async () => {
+  const {violations} = await axe.run(document, {resultTypes: ['violations']});
+  return violations.filter(v => v.impact === 'serious' || v.impact === 'critical')
+    .map(v => v.id + ': ' + v.nodes.map(n => n.target.join(' ')).slice(0, 3).join(', '));
+}"""
+
 
 @pytest.fixture(scope="session")
 def browser():
@@ -110,3 +117,18 @@ def made_report(tmp_path):
         return path
 
     return making
+
+
+@pytest.fixture(scope="session")
+def serious_findings():
+    """Ask axe-core for what it finds serious or worse on a page."""
+    if not AXE.is_file():
+        pytest.skip("no axe-core: npm ci in ncsim-viz/frontend, to audit the viewer")
+    axe = AXE.read_text(encoding="utf-8")
+
+    def finding(page):
+        if not page.evaluate("'axe' in window"):
+            page.evaluate(axe)  # by the debugger: the page's own policy forbids other scripts
+        return page.evaluate(CHECK)
+
+    return finding

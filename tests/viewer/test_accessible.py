@@ -1,31 +1,15 @@
 """Usable without a mouse, with a screen reader, with little sight, and without motion."""
 
-from pathlib import Path
-
 import pytest
 
-ROOT = Path(__file__).parents[2]
-AXE = ROOT / "ncsim-viz" / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 VIEWS = [
     "overview", "gantt", "topology", "rates", "cascade", "replay", "dag", "compare", "events",
     "parameters",
 ]  # fmt: skip
-CHECK = """async () => {
-  const {violations} = await axe.run(document, {resultTypes: ['violations']});
-  return violations.filter(v => v.impact === 'serious' || v.impact === 'critical')
-    .map(v => v.id + ': ' + v.nodes.map(n => n.target.join(' ')).slice(0, 3).join(', '));
-}"""
 
 
-def serious_findings(page):
-    if not page.evaluate("'axe' in window"):
-        page.add_script_tag(path=AXE)
-    return page.evaluate(CHECK)
-
-
-@pytest.mark.skipif(not AXE.is_file(), reason="no axe-core: npm ci in ncsim-viz/frontend")
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_axe_finds_nothing_serious_in_any_view(open_page, report, theme):
+def test_axe_finds_nothing_serious_in_any_view(open_page, report, theme, serious_findings):
     page = open_page(report.as_uri() + "#s=x0&w=1000000-60000000", color_scheme=theme)
     found = {}
     for view in VIEWS:

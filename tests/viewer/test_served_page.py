@@ -61,14 +61,24 @@ def test_the_runs_of_the_folder_are_listed_opened_and_compared(served, open_page
     assert "b=solo" in address
 
 
-def test_a_study_shows_winners_regret_maps_and_runs_again_what_is_chosen(
-    served, open_page, until, tmp_path
-):
-    (tmp_path / "sweep.yaml").write_text(SWEEP)
-    study = served.site.library.root / "study"
+@pytest.fixture(scope="session")
+def made_study(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sweep")
+    (folder / "sweep.yaml").write_text(SWEEP)
     with pytest.raises(SystemExit) as ended:
-        ncsim(["sweep", str(tmp_path / "sweep.yaml"), "-o", str(study), "-q", "-j", "1"])
+        ncsim(["sweep", str(folder / "sweep.yaml"), "-o", str(folder / "study"), "-q", "-j", "1"])
     assert ended.value.code == 0
+    return folder / "study"
+
+
+@pytest.fixture
+def study(served, made_study):
+    """The study among what is served."""
+    return shutil.copytree(made_study, served.site.library.root / "study")
+
+
+@pytest.mark.usefixtures("study")
+def test_a_study_shows_winners_regret_maps_and_runs_again_what_is_chosen(served, open_page, until):
     page = open_page(served.url)
     page.get_by_role("button", name="study", exact=True).click()
     until(page, "ncsimViewer.page.source.extras.study")
@@ -85,6 +95,28 @@ def test_a_study_shows_winners_regret_maps_and_runs_again_what_is_chosen(
     columns = page.evaluate("ncsimViewer.page.source.extras.study.runs.columns")
     makespan_us = page.evaluate("ncsimViewer.run.done.makespan")
     assert makespan_us / 1e6 == pytest.approx(row[columns.index("makespan_s")])
+
+
+@pytest.mark.usefixtures("study")
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing_serious_in_form_runs_and_studies(
+    served, open_page, until, serious_findings, theme
+):
+    page = open_page(served.url, color_scheme=theme)
+    page.get_by_role("button", name="study", exact=True).wait_for()
+    found = {"runs": serious_findings(page)}
+    page.keyboard.press("n")
+    page.locator(".run-box [role=status]:has-text('valid')").wait_for()
+    page.locator("#yaml").fill(yaml_of(page).replace("to: relay", "to: relai"))
+    page.locator(".faults button").first.wait_for()
+    found["form"] = serious_findings(page)
+    page.evaluate("ncsimViewer.service.openStudy('study')")
+    until(page, "ncsimViewer.page.source.extras.study !== undefined")
+    for sheet in range(5):
+        page.evaluate("sheet => ncsimViewer.page.store.set({sheet})", sheet)
+        found[sheet] = serious_findings(page)
+
+    assert {place: findings for place, findings in found.items() if findings} == {}
 
 
 def yaml_of(page):

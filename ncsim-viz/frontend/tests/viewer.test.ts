@@ -3,8 +3,9 @@ import { Cursor } from "../src/data/cursor";
 import { K, type Run } from "../src/data/run";
 import { csvOf } from "../src/draw/format";
 import { layered } from "../src/draw/layers";
-import { Lanes } from "../src/draw/lanes";
+import { Lanes, type Level } from "../src/draw/lanes";
 import { SvgPainter } from "../src/draw/painter";
+import { fromIntervals, fromPyramid } from "../src/draw/raster";
 import { fromHash, hashOf, START } from "../src/state";
 import { made, random, read } from "./made";
 
@@ -56,6 +57,34 @@ describe("lanes", () => {
       for (let k = lane.from; k < lane.to; k++) if (lanes.start.data[k] <= time && lanes.end.data[k] >= time) wanted = k;
       expect(lanes.hit(lane, time)).toBe(wanted);
     }
+  });
+});
+
+describe("pixels", () => {
+  test("from the pyramid cover what those from intervals cover, to two pixels at the ends", () => {
+    const lanes = new Lanes(run, "node", false);
+    const width = 300;
+    const next = random(21);
+    for (let i = 0; i < 200; i++) {
+      const index = Math.floor(next() * lanes.lanes.length);
+      const row = { lane: lanes.lanes[index], index, top: 0, height: 1 };
+      const from = Math.floor(next() * run.end * 0.4);
+      const part = { from, to: from + run.end * (0.1 + next() * 0.5), top: 0, whole: run.end };
+      const [exact, quick] = [new Uint32Array(width), new Uint32Array(width)];
+      fromIntervals(exact, width, lanes, row, part, [1, 2]);
+      const level = lanes.level(Math.ceil((width * part.whole) / (part.to - part.from)));
+      fromPyramid(quick, width, level as Level, row, part, [1, 2]);
+      const near = (line: Uint32Array, x: number): boolean => line.subarray(x - 2, x + 3).some((pixel) => pixel > 0);
+      for (let x = 2; x < width - 2; x++) {
+        if (exact[x]) expect(near(quick, x)).toBe(true);
+        if (quick[x]) expect(near(exact, x)).toBe(true);
+      }
+    }
+  });
+
+  test("of tens of thousands of lanes need no pyramid", () => {
+    const many = read(made(5000));
+    expect(new Lanes(many, "transfer", false).level(1000)).toBeNull();
   });
 });
 

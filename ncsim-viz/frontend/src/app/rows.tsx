@@ -29,7 +29,7 @@ export function sorted(rows: Cell[][], order: Order | null): number[] {
 
 export function Rows({ view, ctx, version }: { view: View; ctx: Context; version: number }) {
   const { ui } = ctx;
-  const table = useMemo(() => view.table(ctx), [view, version, ctx.extras, ui.event, ui.window, ui.search, ui.selection, ui.dag, ui.sheet, ui.heat]);
+  const table = useMemo(() => view.table(ctx), [view, version, ctx.extras, view.tableFollows ? ui.event : 0, ui.window, ui.search, ui.selection, ui.dag, ui.sheet, ui.heat]);
   const is = (chosen: Selection | null): boolean => chosen !== null && chosen.kind === ui.selection?.kind && chosen.id === ui.selection.id;
   return <TableRows title={view.title} table={table} isChosen={is} select={ctx.select} />;
 }

@@ -6,6 +6,7 @@ import type { LaneMode } from "../state";
 
 export const BINS = 16384;
 export const MANY = 20000;
+const MAX_PYRAMID_LANES = 2000;
 
 export interface Lane {
   label: string;
@@ -20,7 +21,7 @@ export interface Lane {
 }
 
 /** Busy share and dominant colour of a lane per bin; a coarser level has a quarter of the bins. */
-interface Level { bins: number; busy: Uint8Array; colour: Uint8Array }
+export interface Level { bins: number; busy: Uint8Array; colour: Uint8Array }
 
 /** Sublanes of a group: many where few intervals are to be told apart, few where pixels are drawn anyway. */
 const MAX_SUBLANES = { few: 40, many: 4 };
@@ -85,8 +86,9 @@ export class Lanes {
     return total;
   }
 
-  /** The mip pyramid, built once; only for many intervals. */
-  level(wantedBins: number): Level {
+  /** The mip pyramid, built once; none for so many lanes that it would be large and each is short anyway. */
+  level(wantedBins: number): Level | null {
+    if (this.lanes.length > MAX_PYRAMID_LANES) return null;
     this.levels ??= this.buildLevels();
     let best = this.levels[0];
     for (const level of this.levels) if (level.bins >= wantedBins) best = level;

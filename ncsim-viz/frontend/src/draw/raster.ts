@@ -1,6 +1,6 @@
 /** Lanes as pixels: the cost depends on pixels, not on intervals. */
 
-import type { Lane, Lanes } from "./lanes";
+import type { Lane, Lanes, Level } from "./lanes";
 import { BINS } from "./lanes";
 import { pixelOf, type Palette } from "./palette";
 
@@ -35,15 +35,15 @@ export function rasterize(pixels: Uint32Array, width: number, lanes: Lanes, rows
   const binsInWindow = ((part.to - part.from) / Math.max(1, part.whole)) * BINS;
   for (const row of rows) {
     line.fill(0);
-    if (binsInWindow >= width) fromPyramid(line, width, lanes, row, part, palette);
+    const level = binsInWindow >= width ? lanes.level(Math.ceil((width * part.whole) / (part.to - part.from))) : null;
+    if (level) fromPyramid(line, width, level, row, part, palette);
     else fromIntervals(line, width, lanes, row, part, palette);
     const [first, last] = [Math.round(row.top - part.top), Math.round(row.top + row.height - part.top)];
     for (let y = Math.max(0, first); y < Math.min(height, last); y++) pixels.set(line, y * width);
   }
 }
 
-function fromPyramid(line: Uint32Array, width: number, lanes: Lanes, row: Row, { from, to, whole }: Part, palette: number[]): void {
-  const level = lanes.level(Math.ceil((width * whole) / (to - from)));
+export function fromPyramid(line: Uint32Array, width: number, level: Level, row: Row, { from, to, whole }: Part, palette: number[]): void {
   const perPixel = (((to - from) / whole) * level.bins) / width;
   const first = (from / whole) * level.bins;
   const base = row.index * level.bins;
@@ -65,7 +65,7 @@ function fromPyramid(line: Uint32Array, width: number, lanes: Lanes, row: Row, {
   }
 }
 
-function fromIntervals(line: Uint32Array, width: number, lanes: Lanes, row: Row, { from, to }: Part, palette: number[]): void {
+export function fromIntervals(line: Uint32Array, width: number, lanes: Lanes, row: Row, { from, to }: Part, palette: number[]): void {
   const perUs = width / (to - from);
   const [first, last] = lanes.range(row.lane, from, to);
   for (let i = first; i < last; i++) {

@@ -131,7 +131,7 @@ function table(ctx: Context): Table {
 }
 
 export const cascade: View = {
-  id: "cascade",
+  id: "cascade", tableFollows: true,
   title: "Cascade",
   key: "5",
   summary: (ctx) => (focus(ctx) < 0 ? "No recalculation is recorded" : `Recalculation ${focus(ctx) + 1} of ${ctx.run.recalcs}: ${causeOf(ctx.run, focus(ctx))}`),

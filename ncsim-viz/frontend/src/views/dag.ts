@@ -72,9 +72,14 @@ function paintDag(p: Painter, ctx: Context, number: number, box: Box): void {
   const at = placesOf(ctx, number, box);
   let most = 1e-9;
   for (let x = dag.firstEdge; x < dag.firstEdge + dag.edges; x++) most = Math.max(most, run.exSize.data[x]);
-  for (let x = dag.firstEdge; x < dag.firstEdge + dag.edges; x++) paintEdge(p, ctx, at, x, most);
+  /** Above or below what is seen: -1 or 1. */
+  const beyond = (task: number): number => (at.y(task) < box.top - ROW ? -1 : at.y(task) > box.bottom + ROW ? 1 : 0);
+  for (let x = dag.firstEdge; x < dag.firstEdge + dag.edges; x++) {
+    const side = beyond(run.exSource.data[x]);
+    if (side === 0 || side !== beyond(run.exTarget.data[x])) paintEdge(p, ctx, at, x, most);
+  }
   const nodes = usedNodes(ctx, dag);
-  for (let task = dag.firstTask; task < dag.firstTask + dag.tasks; task++) paintTask(p, ctx, at, task, nodes);
+  for (let task = dag.firstTask; task < dag.firstTask + dag.tasks; task++) if (beyond(task) === 0) paintTask(p, ctx, at, task, nodes);
 }
 
 function usedNodes(ctx: Context, dag: DagRow): number[] {

@@ -66,7 +66,7 @@ function paneAt(box: Box, x: number, y: number): { view: View; pane: Box; left: 
 }
 
 export const replay: View = {
-  id: "replay", title: "Replay", key: "6",
+  id: "replay", tableFollows: true, title: "Replay", key: "6",
   summary: (ctx) => `Map, transfers in service and Gantt chart at the playhead: ${nowText(ctx)}`,
   draw,
   overlay,

@@ -250,7 +250,7 @@ function table(ctx: Context): Table {
 }
 
 export const topology: View = {
-  id: "topology",
+  id: "topology", tableFollows: true,
   title: "Topology",
   key: "3",
   summary: (ctx) => `Map of ${count(ctx.run.nodes.length, "node")} and ${count(ctx.run.links.length, "link")}; ${count(ctx.cursor.active.length, "transfer")} in service now`,

@@ -55,6 +55,8 @@ export interface View {
   /** One sentence for who cannot see the drawing. */
   summary(ctx: Context): string;
   table(ctx: Context): Table;
+  /** Whether the table changes with the playhead. */
+  tableFollows?: boolean;
   /** What stands still while the playhead moves; the same drawing for screen and export. */
   draw?(p: Painter, ctx: Context, box: Box): void;
   /** Whether there is nothing to draw now, only a table. */
