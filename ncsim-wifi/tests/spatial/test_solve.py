@@ -91,3 +91,16 @@ def test_hidden_pair_gets_what_joint_chains_give_and_not_what_independence_gives
 
     assert with_chains == pytest.approx([1.37, 1.37], rel=0.04)
     assert without[0] < 1.1
+
+
+def test_a_crowd_of_hidden_stations_starves_nobody_altogether():
+    """Interferers beyond the nearest are neither constant noise nor always on."""
+    rng = np.random.default_rng(30)
+    senders_m = rng.uniform(0.0, 250.0, (30, 2))
+    turned = rng.uniform(0.0, 2.0 * np.pi, 30)
+    receivers_m = senders_m + 30.0 * np.stack([np.cos(turned), np.sin(turned)], axis=1)
+
+    goodputs_MBps = saturated_goodputs_MBps(plant(senders_m, receivers_m), range(30))
+
+    assert goodputs_MBps.min() > 1e-3
+    assert goodputs_MBps.sum() < 10.0

@@ -5,6 +5,7 @@ Source: MODEL 2.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,22 @@ NOBODY = -1
 RTS_RATIO_dB = 7.0  # a control frame survives a collision above this ratio (MODEL 2)
 
 
+class Others(NamedTuple):
+    """Harmful stations beyond the nearest ones, by link and group.
+
+    Args:
+        link: The link that suffers.
+        station: The station it suffers from.
+        group: Number of the group, whose members exclude each other on the air.
+        harm: Part of overlapped frames that are lost.
+    """
+
+    link: IntArray
+    station: IntArray
+    group: IntArray
+    harm: FloatArray
+
+
 @dataclass(frozen=True)
 class Near:
     """The strongest hidden stations of each link, strongest first, and the noise of the rest.
@@ -28,11 +45,15 @@ class Near:
         station: Shape (links, near), ``NOBODY`` where there are fewer.
         power_mW: Their power at the receiver, 0 where there is nobody.
         noise_mW: Noise and far interferers, shape (links,).
+        far_mW: Power of the far interferers, which only raise the noise, shape (links, stations).
+        others: Stations beyond the nearest that are no mere noise.
     """
 
     station: IntArray
     power_mW: FloatArray
     noise_mW: FloatArray
+    far_mW: FloatArray
+    others: Others
 
 
 def far_activity(degree: FloatArray) -> FloatArray:
@@ -47,22 +68,50 @@ def far_activity(degree: FloatArray) -> FloatArray:
 
 
 def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
-    """Return the interferers looked at one by one; all others only raise the noise.
+    """Return the interferers looked at one by one, and what becomes of all others.
+
+    Others that harm nobody alone only raise the noise.
 
     Args:
         scene: The active links.
         is_hidden: hid[w, l], shape (stations, links).
     """
-    count = scene.settings.approximations.near_count
+    settings = scene.settings
+    count = settings.approximations.near_count
     power_mW = np.where(is_hidden, scene.at_receiver_mW, 0.0).T
     order = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
     near_mW = np.take_along_axis(power_mW, order, axis=1)
     far_mW = power_mW.copy()
     np.put_along_axis(far_mW, order, 0.0, axis=1)
+    harm = _harm(scene, far_mW)
+    far_mW[harm > 0.0] = 0.0
     noise_mW = np.full(len(scene.links), scene.plant.noise_mW)
-    if scene.settings.terms.far_noise:
+    if not settings.terms.far_noise:
+        far_mW[:] = 0.0
+    else:
         noise_mW += far_mW @ far_activity(scene.senses.sum(axis=1).astype(np.float64))
-    return Near(np.where(near_mW > 0.0, order, NOBODY), near_mW, noise_mW)
+    if not settings.terms.hidden_loss:
+        harm[:] = 0.0
+    near_station = np.where(near_mW > 0.0, order, NOBODY)
+    return Near(near_station, near_mW, noise_mW, far_mW, _others(scene, harm))
+
+
+def _others(scene: Scene, harm: FloatArray) -> Others:
+    """Return the harm of stations beyond the nearest, by groups that exclude each other."""
+    everybody = np.broadcast_to(np.arange(scene.station_count), harm.shape)
+    link, station, group = _grouped(harm > 0.0, everybody, scene.senses)
+    return Others(link, station, group, harm[link, station])
+
+
+def _harm(scene: Scene, power_mW: FloatArray) -> FloatArray:
+    """Return the loss of frames that one interferer overlaps, 0 where too small to count."""
+    settings = scene.settings
+    rows = np.arange(len(scene.links))[:, None]
+    ratio_dB = scene.ratio_dB(power_mW + scene.plant.noise_mW, rows)
+    loss = -np.expm1(-hazard(scene.scheme[:, None], ratio_dB))
+    loss = np.where(ratio_dB < settings.preamble_ratio_dB, 1.0, loss)
+    counts = (power_mW > 0.0) & (loss >= settings.approximations.min_kill)
+    return np.where(counts, loss, 0.0)
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from ncsim_wifi.spatial.backoff import (
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.energy import gate, subset_weights
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts
+from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.joint import JointStages
 from ncsim_wifi.spatial.losses import (
     LARGEST_ON,
@@ -171,8 +172,9 @@ class FixedPoint:
         """Bring losses, chains and stages up to date (MODEL 3.5 to 3.11)."""
         statics = self._statics
         base = base_success(
-            self._scene, statics.noise_hazard, attempts.same_slot, statics.same_slot_loss
+            self._scene, self._noise_hazard(traffic), attempts.same_slot, statics.same_slot_loss
         )
+        base = base * self._others_survival(traffic)
         base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
@@ -194,6 +196,32 @@ class FixedPoint:
             base = base * self._ack_survival(traffic, None)
             success = np.repeat(base[:, None], STAGES, axis=1)
         self._visit(success)
+
+    def _noise_hazard(self, traffic: Traffic) -> FloatArray:
+        """Return the hazard of the far interferers' noise beyond that of the noise floor.
+
+        What the noise floor alone costs is in the clean rate, which the link model decides.
+        """
+        scene, plant = self._scene, self._scene.plant
+        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
+        far_mW = (self._statics.far_mW * sending[scene.station]).sum(axis=1)
+        every = np.arange(len(scene.links))
+        whole = hazard(scene.scheme, scene.ratio_dB(plant.noise_mW + far_mW, every))
+        return np.maximum(0.0, whole - plant.noise_hazard[scene.links])
+
+    def _others_survival(self, traffic: Traffic) -> FloatArray:
+        """Return what interferers beyond the nearest leave; groups may begin at any time."""
+        scene, others = self._scene, self._statics.others
+        if not len(others.link):
+            return np.ones(len(scene.links))
+        on_air_us = traffic.times.on_air_us[others.station]
+        on = traffic.on[scene.station[others.link], others.station] * on_air_us
+        on = others.harm * on / traffic.times.busy_us[others.station]
+        free = 1.0 - np.minimum(np.bincount(others.group, on), LARGEST_ON)
+        begun = np.bincount(others.group, on * scene.protected_us[others.link] / on_air_us) / free
+        first = np.flatnonzero(np.diff(others.group, prepend=-1))
+        logs = np.log(free) - begun
+        return np.exp(np.bincount(others.link[first], logs, minlength=len(scene.links)))
 
     def _fields_survival(self, traffic: Traffic, attempts: Attempts) -> FloatArray:
         """Return what stations that lost a signalling field leave of frames (an artefact)."""

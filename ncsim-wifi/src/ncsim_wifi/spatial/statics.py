@@ -19,10 +19,10 @@ from ncsim_wifi.spatial.handshake import (
     unmet,
     unread_of,
 )
-from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
 from ncsim_wifi.spatial.relations import (
     Hostile,
+    Others,
     RTS_RATIO_dB,
     hostile_relations,
     near_interferers,
@@ -46,7 +46,8 @@ class Statics:
         unread: Who may begin unawares, under RTS/CTS.
         fields: Who may lose a signalling field, if that counts.
         stops_at_cts: Whether the sender defers from the interferer's CTS on.
-        noise_hazard: h_noise of each link.
+        far_mW: Power of stations that only raise the noise, shape (links, stations).
+        others: Harmful stations beyond the nearest.
         same_slot_loss: sync[l, w].
         ack_hazard: h_ack[l, k].
         acks: Who suffers from whose acknowledgements.
@@ -68,7 +69,8 @@ class Statics:
     unread: Unread | None
     fields: LostFields | None
     stops_at_cts: BoolArray
-    noise_hazard: FloatArray
+    far_mW: FloatArray
+    others: Others
     same_slot_loss: FloatArray
     ack_hazard: FloatArray
     acks: AckRelations
@@ -100,7 +102,8 @@ def statics_of(scene: Scene) -> Statics:
         unread_of(scene, RTS_RATIO_dB) if scene.settings.rts_cts else None,
         lost_fields(scene, near.noise_mW),
         _hears_cts_of(scene, own, hostile.station),
-        _added_noise_hazard(scene, near.noise_mW),
+        near.far_mW,
+        near.others,
         same_slot_loss(scene, near.noise_mW),
         hazards,
         ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
@@ -109,16 +112,6 @@ def statics_of(scene: Scene) -> Statics:
         gate_masks(scene, energy, hostile, before=True),
         gate_masks(scene, energy, hostile, before=False),
     )
-
-
-def _added_noise_hazard(scene: Scene, noise_mW: FloatArray) -> FloatArray:
-    """Return the hazard of the far interferers' noise beyond that of the noise floor.
-
-    What the noise floor alone costs is in the clean rate, which the link model decides.
-    """
-    every = np.arange(len(scene.links))
-    whole = hazard(scene.scheme, scene.ratio_dB(noise_mW, every))
-    return np.maximum(0.0, whole - scene.plant.noise_hazard[scene.links])
 
 
 def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
