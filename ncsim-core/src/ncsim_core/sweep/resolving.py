@@ -19,6 +19,7 @@ from ncsim_core.scenario.overrides import with_overrides
 from ncsim_core.scenario.published_form import Translation, translated_config
 from ncsim_core.scenario.resolution import resolve_config
 from ncsim_core.sweep.axes import Run, part_of
+from ncsim_core.sweep.identity import CORE, software
 from ncsim_core.sweep.plan import SweepPlan, canonical
 from ncsim_core.workflow import Injection
 
@@ -118,10 +119,13 @@ class Resolver:
         return self._versions(names)
 
     def _make_versions(self, names: tuple[tuple[str, str], ...]) -> str:
-        found = [self._registry.find(kind, name) for kind, name in names]
-        owners = {f"{each.distribution}=={each.version}" for each in found}
-        core = self._registry.plugins[0]
-        return " ".join(sorted(owners | {f"{core.distribution}=={core.version}"}))
+        owners: dict[str, set[str]] = {CORE: {"ncsim_core"}}
+        for kind, name in names:
+            found = self._registry.find(kind, name)
+            package = found.component.factory.partition(":")[0].partition(".")[0]
+            owners.setdefault(found.distribution, set()).add(package)
+        texts = [software(name, tuple(sorted(packages))) for name, packages in owners.items()]
+        return " ".join(sorted(texts))
 
     def network_parameters(self, values: Mapping[str, Any]) -> Any:  # noqa: ANN401 - plain data
         """Return the ``network`` of the base with values put in."""
