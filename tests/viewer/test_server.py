@@ -131,14 +131,38 @@ def test_a_run_of_another_terminal_is_followed_across_dropped_connections(tmp_pa
     assert got == (folder / "x" / "trace.jsonl").read_bytes()
 
 
+def child_of(server, folder):
+    """Return the process of a long run that the server was asked for."""
+    status, answer = ask(server, "POST", "/api/jobs", {"yaml": scenario(1000), "name": "long"})
+    assert status == 200, answer
+    while not (partial := list(folder.glob(".long.partial-*"))):
+        time.sleep(0.02)
+    return int(partial[0].name.split("-")[1])
+
+
+def is_running(process):
+    """Return whether a process is there and no zombie."""
+    status = Path(f"/proc/{process}/status")
+    return status.exists() and "\nState:\tZ" not in status.read_text()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends children with their parent")
+def test_a_server_that_is_killed_leaves_no_run_behind(tmp_path):
+    with served(tmp_path) as server:
+        child = child_of(server, tmp_path)
+        server[0].kill()
+        server[0].wait()
+        deadline_s = time.monotonic() + 10
+        while is_running(child) and time.monotonic() < deadline_s:
+            time.sleep(0.02)
+
+        assert not is_running(child)
+
+
 def test_ctrl_c_ends_the_server_cleanly_with_all_that_it_started(tmp_path):
     with served(tmp_path) as server:
         process = server[0]
-        status, answer = ask(server, "POST", "/api/jobs", {"yaml": scenario(1000), "name": "long"})
-        assert status == 200, answer
-        while not (partial := list(tmp_path.glob(".long.partial-*"))):
-            time.sleep(0.02)
-        child = int(partial[0].name.split("-")[1])
+        child = child_of(server, tmp_path)
         with closing(HTTPConnection("127.0.0.1", server[1], timeout=60)) as stream:
             stream.request("GET", f"/api/stream?run=long&token={server[2]}")
             stream.getresponse().readline()

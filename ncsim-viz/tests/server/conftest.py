@@ -1,7 +1,7 @@
 import http.client
 import json
 import threading
-from contextlib import closing
+from contextlib import closing, contextmanager
 from urllib.parse import urlencode
 
 import pytest
@@ -51,15 +51,30 @@ def run_folder(tmp_path, scenario_text):
 
 
 @pytest.fixture
-def server(run_folder):
-    with ViewerServer(run_folder.parent, limits=Limits(60.0, 4000, 100)) as viewer:
-        thread = threading.Thread(target=viewer.serve_forever, kwargs={"poll_interval": 0.02})
-        thread.start()
-        yield viewer
-        viewer.shutdown()
-        thread.join()
+def serve(run_folder):
+    """Return a context manager that serves the folder and yields a client."""
+
+    @contextmanager
+    def serving():
+        with ViewerServer(run_folder.parent, limits=Limits(60.0, 4000, 100)) as viewer:
+            options = {"poll_interval": 0.02}
+            thread = threading.Thread(target=viewer.serve_forever, kwargs=options)
+            thread.start()
+            try:
+                yield Client(viewer)
+            finally:
+                viewer.shutdown()
+                thread.join()
+
+    return serving
 
 
 @pytest.fixture
-def client(server):
-    return Client(server)
+def client(serve):
+    with serve() as one:
+        yield one
+
+
+@pytest.fixture
+def server(client):
+    return client.server

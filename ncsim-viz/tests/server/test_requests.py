@@ -279,6 +279,15 @@ def test_requests_of_the_wrong_shape_are_refused(client, path):
         assert client.post(path, body)[0] == 400
 
 
+def test_a_folder_that_cannot_be_written_is_only_shown(serve, monkeypatch):
+    monkeypatch.setattr("ncsim_viz.server.serving.os.access", lambda *_: False)
+    with serve() as client:
+        assert client.get("/api/entries")[0] == 200
+        for status, answer in (client.get("/api/jobs"), client.post("/api/jobs", {"yaml": "x"})):
+            assert status == 409
+            assert "cannot be written" in answer["error"]
+
+
 def test_a_parameter_may_be_given_once_only(client):
     assert client.ask("GET", "/api/trace?run=small&run=other")[0] == 400
     assert client.ask("GET", "/api/trace")[0] == 400

@@ -47,7 +47,7 @@ def main() -> None:
     _restrict(Limits(**json.loads(limits)))
     _leave_with(int(parent))
     module, _, name = entry.partition(":")
-    sys.argv = [name, *arguments]
+    sys.argv = ["ncsim", *arguments]
     getattr(importlib.import_module(module), name)()
 
 

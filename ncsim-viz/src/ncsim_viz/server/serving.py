@@ -116,8 +116,10 @@ class ViewerServer(ThreadingHTTPServer):
 
 
 def serve(server: ViewerServer) -> None:
-    """Serve until Ctrl-C or a polite signal."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    """Serve until Ctrl-C, a polite signal, or the end of the terminal."""
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.default_int_handler)
     with server, contextlib.suppress(KeyboardInterrupt):
         server.serve_forever(poll_interval=0.2)
 
