@@ -5,7 +5,8 @@ from contextlib import closing
 
 import pytest
 from ncsim_viz.server import handler, serving
-from ncsim_viz.server.guards import is_local_host, page_policy
+from ncsim_viz.server.errors import RequestError
+from ncsim_viz.server.guards import is_local_host, page_policy, path_below
 from ncsim_viz.server.serving import TOO_MANY
 
 READS = ["/", "/api/entries", "/api/trace?run=small", "/api/stream?run=small", "/api/jobs"]
@@ -33,6 +34,18 @@ def test_a_foreign_host_is_refused(client, path, host):
     status, _, _ = client.ask("GET", path, headers={**client.headers, "Host": host})
 
     assert status == 403
+
+
+def test_a_path_that_a_link_leads_out_is_no_path(tmp_path):
+    root = tmp_path / "root"
+    root.mkdir()
+    (root / "out").symlink_to(tmp_path)
+    (root / "in").symlink_to(root)
+
+    assert path_below(root, "in/new") == root / "in" / "new"
+    for identity in ("out", "out/new"):
+        with pytest.raises(RequestError):
+            path_below(root, identity)
 
 
 def test_a_tunnel_may_end_at_another_port():
@@ -164,7 +177,9 @@ def test_malformed_requests_are_refused_and_the_connection_ends(server, lines, s
 
     answer = answer_to(server, request + b"GET / HTTP/1.1\r\n\r\n")
 
+    is_read = "Content-Length: 2" in lines and len(lines) == 2
     assert answer.split()[1] == status
+    assert answer.count(b"HTTP/1.1 ") == 1 + is_read  # else the rest may be part of the body
 
 
 def test_clients_that_say_nothing_half_or_rubbish_hold_nobody_up(client, monkeypatch):
