@@ -179,3 +179,33 @@ def test_an_unfinished_trace_opens_and_says_so(made_report, open_page, grid_runs
     page = open_page(made_report([json.loads(line) for line in lines]).as_uri())
 
     assert page.locator("header .status").inner_text() == "truncated"
+
+
+def test_an_event_that_is_clicked_takes_the_playhead_and_what_it_is_about(page):
+    page.keyboard.press("9")
+    page.locator(".rows tbody button").nth(10).click()
+
+    line = int(page.locator(".rows tbody tr[aria-current] td").first.inner_text())
+    assert page.evaluate("ncsimViewer.run.evLine.data[ncsimViewer.state().event]") == line
+
+
+def test_a_table_says_what_it_leaves_out_and_its_csv_leaves_out_nothing(made_report, open_page):
+    header = {
+        "format": "ncsim-trace", "version": "1.0", "time_unit": "us", "level": "full",
+        "software": "x", "scenario": "long", "scenario_sha256": "", "seed": 1, "plugins": {},
+        "sections": {}, "nodes": [["n", 1.0, None, None]], "links": [], "kinds": {},
+    }  # fmt: skip
+    inject = {"t": 0, "k": "inject", "d": 0, "dag": "d", "i0": 0, "x0": 0, "edges": []}
+    inject["tasks"] = [[f"T{i}", 1.0] for i in range(2500)]
+    place = {"t": 0, "k": "place", "d": 0, "n": [0] * 2500}
+    rest = [
+        {"t": i, "k": kind, "i": i, "n": 0}
+        for i in range(2500)
+        for kind in ("ready", "start", "end")
+    ]
+    page = open_page(made_report([header, inject, place, *rest]).as_uri() + "#v=events")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="CSV").click()
+
+    assert "The first 5000 of 7502 rows" in page.locator(".rows .note").inner_text()
+    assert len(download.value.path().read_text().splitlines()) == 1 + 7502

@@ -54,6 +54,7 @@ async function boot(): Promise<void> {
   try {
     const service = await fill();
     offer(service);
+    root.textContent = "";
     render(<App page={page} service={service} />, root);
     addEventListener("hashchange", () => {
       page.store.set(fromHash(location.hash));

@@ -25,7 +25,7 @@ let latest: Run | null = null;
 
 function follow(): Live {
   const keep = (word: string) => (run: Run): void => { told.push(word); latest = run; };
-  return new Live((from) => new Source(from) as unknown as EventSource, { opened: keep("opened"), grew: keep("grew"), ended: (_, status) => told.push(status) });
+  return new Live((from) => new Source(from) as unknown as EventSource, { opened: keep("opened"), grew: keep("grew"), ended: (_, status) => told.push(status), failed: (words) => told.push(words) });
 }
 
 beforeEach(() => {
@@ -73,6 +73,13 @@ test("another run takes the place of the first", () => {
   vi.advanceTimersByTime(2000);
   expect(told).toEqual(["opened", "opened"]);
   expect(latest?.lines).toBe(3);
+});
+
+test("what cannot be read is said, and ends it", () => {
+  follow();
+  Source.all[0].send([...lines.slice(0, 2), "{no record"], "9");
+  expect(told).toEqual(["line 3 of the trace is no JSON: {no record"]);
+  expect(Source.all[0].readyState).toBe(2);
 });
 
 test("who has closed hears nothing more", () => {

@@ -31,14 +31,20 @@ export function Rows({ view, ctx, version }: { view: View; ctx: Context; version
   const { ui } = ctx;
   const table = useMemo(() => view.table(ctx), [view, version, ctx.extras, view.tableFollows ? ui.event : 0, ui.window, ui.search, ui.selection, ui.dag, ui.sheet, ui.heat]);
   const is = (chosen: Selection | null): boolean => chosen !== null && chosen.kind === ui.selection?.kind && chosen.id === ui.selection.id;
-  return <TableRows title={view.title} table={table} isChosen={is} select={ctx.select} />;
+  const choose = (row: number): void => {
+    const [event, pick] = [table.event?.(row), table.pick?.(row)];
+    if (event !== undefined) ctx.goTo(event);
+    if (pick) ctx.select(pick);
+  };
+  const isNow = (row: number): boolean => is(table.pick?.(row) ?? null) || table.event?.(row) === ui.event;
+  return <TableRows title={view.title} table={table} isChosen={isNow} choose={choose} />;
 }
 
 interface Props {
-  title: string; table: Table; isChosen: (row: Selection | null) => boolean; select: (row: Selection) => void;
+  title: string; table: Table; isChosen: (row: number) => boolean; choose: (row: number) => void;
 }
 
-function TableRows({ title, table, isChosen, select }: Props) {
+function TableRows({ title, table, isChosen, choose }: Props) {
   const [top, setTop] = useState(0);
   const [order, setOrder] = useState<Order | null>(null);
   const numbers = useMemo(() => sorted(table.rows, order), [table, order]);
@@ -57,11 +63,11 @@ function TableRows({ title, table, isChosen, select }: Props) {
         <tbody>
           <Gap rows={first} />
           {numbers.slice(first, first + SHOWN).map((row) => {
-            const pick = table.pick?.(row) ?? null;
+            const isButton = table.event !== undefined || (table.pick?.(row) ?? null) !== null;
             return (
-              <tr key={row} aria-current={isChosen(pick) ? "true" : undefined}>{table.rows[row].map((cell, k) => (
+              <tr key={row} aria-current={isChosen(row) ? "true" : undefined}>{table.rows[row].map((cell, k) => (
                 <td key={k} class={typeof cell === "number" ? "number" : undefined}>
-                  {k === 0 && pick ? <button class="link" onClick={() => select(pick)}>{shown(cell)}</button> : shown(cell)}
+                  {k === 0 && isButton ? <button class="link" onClick={() => choose(row)}>{shown(cell)}</button> : shown(cell)}
                 </td>
               ))}</tr>
             );

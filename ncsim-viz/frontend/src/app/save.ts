@@ -70,6 +70,6 @@ export function savePng(view: View, ctx: Context): void {
 }
 
 export function saveCsv(view: View, ctx: Context): void {
-  const table = view.table(ctx);
+  const table = view.table(ctx, true);
   save(`${view.id}.csv`, "text/csv", csvOf(table.columns, table.rows));
 }

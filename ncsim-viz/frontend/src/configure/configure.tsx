@@ -1,6 +1,7 @@
 /** Configure and run: a form from the schema and the YAML it stands for, each following the other. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
+import { save } from "../app/save";
 import { wordsOf, type Catalogue, type Document, type Fault, type Schema, type Validation } from "../server/api";
 import { JobList } from "../server/runs";
 import type { Service } from "../server/service";
@@ -88,6 +89,7 @@ function Editor({ service, offer }: { service: Service; offer: Offer }) {
         <RunBox service={service} yaml={scenario.yaml} check={scenario.check} fail={scenario.setError} />
         {scenario.error && <p role="alert" class="fault">{scenario.error}</p>}
         <FaultList faults={faults} notes={scenario.check?.notes ?? []} />
+        <Files yaml={scenario.yaml} put={scenario.fromText} />
         <label for="yaml">Scenario as YAML (comments are kept until the form changes something)</label>
         <textarea id="yaml" spellcheck={false} value={scenario.yaml} onInput={(event) => scenario.fromText(event.currentTarget.value)} />
         <JobList service={service} />
@@ -104,6 +106,16 @@ function Jumps({ schema }: { schema: Schema }) {
     <nav aria-label="Parts of the form" class="jumps">Go to {parts.map(([name, part]) => (
       <button key={part} onClick={() => focusOn(pointerOf([name, part]))}>{part}</button>
     ))}</nav>
+  );
+}
+
+/** The text from a file and into one. */
+function Files({ yaml, put }: { yaml: string; put: (text: string) => void }) {
+  return (
+    <div class="run-box">
+      <label>Open a file <input type="file" accept=".yaml,.yml,.json" onChange={(event) => void event.currentTarget.files?.[0]?.text().then(put)} /></label>
+      <button onClick={() => save("scenario.yaml", "application/yaml", yaml)}>Save YAML</button>
+    </div>
   );
 }
 

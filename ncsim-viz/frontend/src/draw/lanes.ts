@@ -42,9 +42,9 @@ export class Lanes {
   constructor(private readonly run: Run, readonly mode: LaneMode, byLoad: boolean) {
     const groups = this.groups();
     if (byLoad) {
-      const load = (group: Group): number => group.spans.reduce((sum, each) => sum + each.to - each.from, 0);
-      const loads = new Map(groups.map((group) => [group, load(group)]));
-      groups.sort((a, b) => (loads.get(b) as number) - (loads.get(a) as number));
+      const loads = new Map<number, number>();
+      for (const { owner, spans } of groups) loads.set(owner, spans.reduce((sum, each) => sum + each.to - each.from, loads.get(owner) ?? 0));
+      groups.sort((a, b) => (loads.get(b.owner) as number) - (loads.get(a.owner) as number)); // stable: an owner's tasks and transfers stay together
     }
     for (const group of groups) this.place(group);
     let shade = 0;

@@ -9,6 +9,8 @@ export interface Follower {
   /** The run has more records. */
   grew(run: Run): void;
   ended(run: Run, status: string): void;
+  /** What came cannot be read; nothing more is asked for. */
+  failed(words: string): void;
 }
 
 type Connect = (from: string) => EventSource;
@@ -53,7 +55,12 @@ export class Live {
   }
 
   private take(message: MessageEvent<string>): void {
-    this.parser.push(`${message.data}\n`);
+    try {
+      this.parser.push(`${message.data}\n`);
+    } catch (error) {
+      this.close();
+      return this.follower.failed(error instanceof Error ? error.message : String(error));
+    }
     this.place = message.lastEventId;
     if (!this.timer) this.timer = window.setTimeout(() => this.show(), this.pause_ms);
   }

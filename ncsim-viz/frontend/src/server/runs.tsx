@@ -93,7 +93,7 @@ export function JobList({ service }: { service: Service }) {
           <td>{job.name}</td>
           <td>{job.state === "ended" ? (job.status ?? "ended").replaceAll("_", " ") : job.state}{job.message && `: ${job.message}`}</td>
           <td><Progress job={job} /></td>
-          <td>{(job.state === "running" || job.state === "ended") && <button onClick={() => service.openPath(job.run)}>{job.state === "running" ? "Watch" : "Open"}</button>}</td>
+          <td>{(job.state === "running" || job.state === "ended") && <button onClick={() => service.openPath(job.run, "", job.state === "running" ? "replay" : "overview")}>{job.state === "running" ? "Watch" : "Open"}</button>}</td>
           <td>{isOn(job) && <button onClick={() => void service.api.cancel(job.id).then(again, (failure: unknown) => service.say(wordsOf(failure)))}>Cancel</button>}</td>
         </tr>
       ))}</tbody>

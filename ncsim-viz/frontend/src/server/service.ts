@@ -6,6 +6,7 @@ import type { Extras } from "../data/extras";
 import { loadRun } from "../data/load";
 import type { Run } from "../data/run";
 import type { Study } from "../data/study";
+import type { ViewId } from "../state";
 import { Api, Refusal, wordsOf, type Job, type ServerInfo } from "./api";
 import { Live } from "./live";
 
@@ -54,11 +55,12 @@ export class Service {
     }
   }
 
-  openPath(path: string, against = ""): void {
-    const view = this.page.store.ui.view;
+  openPath(path: string, against = "", first: ViewId = "overview"): void {
+    const { view } = this.page.store.ui;
+    const isElsewhere = view === "runs" || view === "configure" || view === "sweep";
     this.page.store.set({
       path, against, window: null, selection: null, event: -1, time: 0, playing: false,
-      view: against ? "compare" : view === "runs" || view === "configure" || view === "sweep" ? "overview" : view,
+      view: against ? "compare" : isElsewhere ? first : view,
     });
   }
 
@@ -90,6 +92,7 @@ export class Service {
         page.open({ run, other: null, extras });
       },
       grew: (run) => this.grew(run),
+      failed: (words) => this.say(words),
       ended: (run, status) => {
         if (status === "abandoned" || status === "gone") this.say(`the run is ${status}: nothing more will come`);
         void this.complete(path, run, extras);

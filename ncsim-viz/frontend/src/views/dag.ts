@@ -138,7 +138,7 @@ function taskAt(ctx: Context, box: Box, x: number, y: number): number {
   return hitIn(ctx, i, boxOf(CELL.width, CELL.height), x - left, y - top);
 }
 
-function table(ctx: Context): Table {
+function table(ctx: Context, everything = false): Table {
   const { run } = ctx;
   const slack = slacks(ctx);
   const rows = isAll(ctx) ? run.dags : run.dags.slice(chosen(ctx), chosen(ctx) + 1);
@@ -152,7 +152,7 @@ function table(ctx: Context): Table {
     ...limited([...tasks, ...edges], (id, i): Cell[] => (i < tasks.length
       ? [run.taskName(id), "task", node(id), null, number(run.tkCost.data[id]), seconds(run.endedAt(id)), seconds(slack[id]), chain.tasks.has(id) ? "yes" : null]
       : [run.transferName(id), run.isLocal(id) ? "local" : "transfer", node(run.exSource.data[id]), node(run.exTarget.data[id]), number(run.exSize.data[id]),
-        seconds(run.arrivedAt(id)), null, chain.transfers.has(id) ? "yes" : null])),
+        seconds(run.arrivedAt(id)), null, chain.transfers.has(id) ? "yes" : null]), everything),
     pick: (row) => (row < tasks.length ? { kind: "task", id: tasks[row] } : { kind: "transfer", id: edges[row - tasks.length] }),
   };
 }

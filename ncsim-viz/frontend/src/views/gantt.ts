@@ -196,7 +196,7 @@ function intervalAt(ctx: Context, box: Box, x: number, y: number): { lane: Lane;
   return found < 0 ? null : { lane, id: lanes.id.data[found] };
 }
 
-function table(ctx: Context): Table {
+function table(ctx: Context, everything = false): Table {
   const { run } = ctx;
   const at = (value: number): string | null => (Number.isNaN(value) ? null : seconds(value));
   const inWindow = (from: number, to: number): boolean => !(from > ctx.window[1] || to < ctx.window[0]);
@@ -207,7 +207,7 @@ function table(ctx: Context): Table {
     columns: ["what", "kind", "node", "to", "ready or created s", "started s", "ended s"],
     ...limited([...tasks, ...transfers], (id, i) => (i < tasks.length
       ? [run.taskName(id), "task", node(id), null, at(run.readyAt(id)), at(run.startedAt(id)), at(run.endedAt(id))]
-      : [run.transferName(id), "transfer", node(run.exSource.data[id]), node(run.exTarget.data[id]), at(run.createdAt(id)), at(run.servedFrom(id)), at(run.servedTo(id))])),
+      : [run.transferName(id), "transfer", node(run.exSource.data[id]), node(run.exTarget.data[id]), at(run.createdAt(id)), at(run.servedFrom(id)), at(run.servedTo(id))]), everything),
     pick: (row) => (row < tasks.length ? { kind: "task", id: tasks[row] } : { kind: "transfer", id: transfers[row - tasks.length] }),
   };
 }

@@ -109,7 +109,7 @@ export function rateAt(run: Run, x: number, time: number): number | null {
 
 /** Rows for a table, with a limit that is said. */
 export const MAX_ROWS = 5000;
-export function limited<T>(all: T[], row: (each: T, i: number) => Cell[]): { rows: Cell[][]; note?: string } {
-  const rows = all.slice(0, MAX_ROWS).map(row);
-  return all.length > MAX_ROWS ? { rows, note: `The first ${MAX_ROWS} of ${all.length} rows; narrow the window to see others.` } : { rows };
+export function limited<T>(all: T[], row: (each: T, i: number) => Cell[], everything = false): { rows: Cell[][]; note?: string } {
+  const rows = (everything ? all : all.slice(0, MAX_ROWS)).map(row);
+  return all.length > rows.length ? { rows, note: `The first ${MAX_ROWS} of ${all.length} rows; narrow the window to see others.` } : { rows };
 }

@@ -102,7 +102,7 @@ function stepUnder(ctx: Context, box: Box, x: number, y: number): number {
   return transfer === undefined || x < LEFT ? -1 : stepAt(ctx.run, transfer, timeOf(scaleOf(ctx, box), x));
 }
 
-function table(ctx: Context): Table {
+function table(ctx: Context, everything = false): Table {
   const { run } = ctx;
   const chosen = ctx.ui.selection?.kind === "transfer" ? [ctx.ui.selection.id] : shownTransfers(ctx);
   const steps = chosen.flatMap((x) => run.stepsOf(x));
@@ -110,7 +110,7 @@ function table(ctx: Context): Table {
     columns: ["transfer", "from s", "MB/s", "bottleneck", "contenders", "hidden", "hidden factor", "flows on link", "cause"],
     ...limited(steps, (step) => [run.transferName(run.stTransfer.data[step]), seconds(run.stepTime(step)), run.stRate.data[step],
       run.links[run.stLink.data[step]]?.id ?? null, run.stContenders.data[step], run.stHidden.data[step], number(run.stFactor.data[step]),
-      run.stFlows.data[step], causeOf(run, run.stRecalc.data[step])]),
+      run.stFlows.data[step], causeOf(run, run.stRecalc.data[step])], everything),
     pick: (row) => ({ kind: "recalc", id: run.stRecalc.data[steps[row]] }),
   };
 }

@@ -7,7 +7,7 @@ import type { Cell, View } from "./view";
 export const events: View = {
   id: "events", title: "Events", key: "9",
   summary: (ctx) => `${ctx.run.events} events`,
-  table(ctx) {
+  table(ctx, everything) {
     const { run, ui } = ctx;
     const wanted = ui.search.toLowerCase();
     const shown: number[] = [];
@@ -19,7 +19,8 @@ export const events: View = {
     }
     return {
       columns: ["line", "time s", "kind", "what"],
-      ...limited(shown, (i) => [run.evLine.data[i], seconds(run.evTime.data[i]), kindName(run, i), sentence(run, i)]),
+      ...limited(shown, (i) => [run.evLine.data[i], seconds(run.evTime.data[i]), kindName(run, i), sentence(run, i)], everything),
+      event: (row) => shown[row],
       pick: (row) => selectionOf(run, shown[row]),
     };
   },

@@ -17,6 +17,8 @@ export interface Table {
   rows: Cell[][];
   /** What a row stands for. */
   pick?: (row: number) => Selection | null;
+  /** Event that a row stands for: choosing it moves the playhead there. */
+  event?: (row: number) => number;
   /** What the table leaves out, said; nothing is cut silently. */
   note?: string;
 }
@@ -54,7 +56,7 @@ export interface View {
   key: string;
   /** One sentence for who cannot see the drawing. */
   summary(ctx: Context): string;
-  table(ctx: Context): Table;
+  table(ctx: Context, everything?: boolean): Table;
   /** Whether the table changes with the playhead. */
   tableFollows?: boolean;
   /** What stands still while the playhead moves; the same drawing for screen and export. */
