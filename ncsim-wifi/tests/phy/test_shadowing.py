@@ -46,3 +46,10 @@ def test_pairs_that_share_a_node_are_not_alike():
 
 def test_no_sigma_means_no_shadowing():
     assert not shadowing_dB(IDS, 0.0, seed=1).any()
+
+
+def test_draws_are_the_same_in_every_version_and_on_every_machine():
+    draws = pair_draws(["n0", "n1", "relay"], 42)
+
+    assert draws[0, 1:].tolist() == pytest.approx([-1.74473497977, 0.49683274791])
+    assert draws[1, 2] == pytest.approx(-2.56137043787)
