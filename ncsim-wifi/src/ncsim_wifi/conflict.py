@@ -37,13 +37,16 @@ class Relations:
             outside it with a receiver that hears the transmitter of ``i`` at the
             cutoff or above.
         is_conflict: Which of the two; conflicts are mutual.
-        power_mW: Received power of ``i`` at the other's receiver.
+        hidden_starts: Where rows begin in ``hidden_mW``, shape ``(links + 1,)``.
+        hidden_mW: Received power of ``i`` at the receivers of the links that it is hidden
+            from, in the order of ``links``; that of conflicts is of no interest.
     """
 
     starts: IntArray
     links: LinkArray
     is_conflict: BoolArray
-    power_mW: FloatArray
+    hidden_starts: IntArray
+    hidden_mW: FloatArray
 
     @property
     def link_count(self) -> int:
@@ -62,6 +65,12 @@ class Relations:
         """Return the conflict neighbourhood N of a link."""
         row = self.row(link)
         return self.links[row][self.is_conflict[row]]
+
+    def hidden(self, link: LinkIndex) -> tuple[LinkArray, FloatArray]:
+        """Return the links that one interferes with unheard, and its power at their receivers."""
+        row = self.row(link)
+        powers = slice(int(self.hidden_starts[link]), int(self.hidden_starts[link + 1]))
+        return self.links[row][~self.is_conflict[row]], self.hidden_mW[powers]
 
     def reach(self, changed: Collection[LinkIndex]) -> set[LinkIndex]:
         """Return ``changed`` and all links affected by them."""
@@ -96,11 +105,14 @@ class Relations:
     def where(self, is_kept: BoolArray) -> "Relations":
         """Return the relations with some entries only."""
         kept_before = np.concatenate([[0], np.cumsum(is_kept)])
+        is_hidden_kept = is_kept[~self.is_conflict]
+        hidden_before = np.concatenate([[0], np.cumsum(is_hidden_kept)])
         return Relations(
             kept_before[self.starts],
             self.links[is_kept],
             self.is_conflict[is_kept],
-            self.power_mW[is_kept],
+            hidden_before[self.hidden_starts],
+            self.hidden_mW[is_hidden_kept],
         )
 
 
@@ -131,21 +143,31 @@ def relations_of(network: Network, power_dBm: FloatArray, radio: Radio) -> Relat
         power_mW,
         radio.rts_cts,
     )
-    row_lengths = np.zeros(len(network.links) + 1, np.int64)
-    for block in _blocks(len(on_air)):
-        row_lengths[on_air[block] + 1] = np.count_nonzero(air.related(block).is_related, axis=1)
-    starts = np.cumsum(row_lengths)
-    count = int(starts[-1])
-    links, names = np.empty(count, np.int32), on_air.astype(np.int32)
-    is_conflict, powers_mW = np.empty(count, np.bool_), np.empty(count)
+    starts, hidden_starts = _starts(air, on_air, len(network.links))
+    links, names = np.empty(starts[-1], np.int32), on_air.astype(np.int32)
+    is_conflict, hidden_mW = np.empty(starts[-1], np.bool_), np.empty(hidden_starts[-1])
     for block in _blocks(len(on_air)):
         found = air.related(block)
         cells = np.flatnonzero(found.is_related)
-        entries = slice(starts[on_air[block.start]], starts[on_air[block.stop - 1] + 1])
+        first, end = on_air[block.start], on_air[block.stop - 1] + 1
+        entries = slice(starts[first], starts[end])
         links[entries] = names[cells % len(on_air)]
         is_conflict[entries] = found.is_conflict.ravel()[cells]
-        powers_mW[entries] = found.power_mW.ravel()[cells]
-    return Relations(starts, links, is_conflict, powers_mW)
+        hidden_cells = cells[~is_conflict[entries]]
+        hidden_mW[hidden_starts[first] : hidden_starts[end]] = found.power_mW.ravel()[hidden_cells]
+    return Relations(starts, links, is_conflict, hidden_starts, hidden_mW)
+
+
+def _starts(air: "Air", on_air: IntArray, link_count: int) -> tuple[IntArray, IntArray]:
+    """Return where the rows of all relations begin, and those of hidden interference."""
+    lengths = np.zeros((2, link_count + 1), np.int64)
+    for block in _blocks(len(on_air)):
+        found = air.related(block)
+        lengths[0, on_air[block] + 1] = np.count_nonzero(found.is_related, axis=1)
+        found.is_related[found.is_conflict] = False
+        lengths[1, on_air[block] + 1] = np.count_nonzero(found.is_related, axis=1)
+    starts, hidden_starts = np.cumsum(lengths, axis=1)
+    return starts, hidden_starts
 
 
 @dataclass(frozen=True)

@@ -40,22 +40,23 @@ def tally(active: Collection[LinkIndex], related: Relations, levels: Levels) -> 
     """
     counts = Tally(*(np.zeros(related.link_count, np.int64) for _ in range(3)))
     for link in active:
-        row = related.row(link)
-        affected, is_hidden = related.links[row], ~related.is_conflict[row]
-        victims = affected[is_hidden]
-        counts.contenders[affected[~is_hidden]] += 1
+        victims, powers_mW = related.hidden(link)
+        counts.contenders[related.conflicts(link)] += 1
         counts.interferers[victims] += 1
-        counts.hidden_units[victims] += levels.units(victims, related.power_mW[row][is_hidden])
+        counts.hidden_units[victims] += levels.units(victims, powers_mW)
     return counts
 
 
 def hidden_units(related: Relations, levels: Levels) -> IntArray:
     """Return the power of each entry at the affected receiver in its quantum, 0 for conflicts."""
     units = np.zeros(len(related.links), np.int64)
+    done = 0
     for start in range(0, len(units), ENTRIES_PER_BLOCK):
         block = slice(start, start + ENTRIES_PER_BLOCK)
         hidden = np.flatnonzero(~related.is_conflict[block]) + start
-        units[hidden] = levels.units(related.links[hidden], related.power_mW[hidden])
+        powers_mW = related.hidden_mW[done : done + len(hidden)]
+        units[hidden] = levels.units(related.links[hidden], powers_mW)
+        done += len(hidden)
     return units
 
 

@@ -143,9 +143,8 @@ class FixedCaptureModel(InterferenceModel):
         rate_Mbps = float(self._signals.rate_Mbps[interferer])
         if rate_Mbps <= 0.0:
             return 1.0
-        row = self._related.row(interferer)
-        at = np.searchsorted(self._related.links[row], link)
-        power_mW = float(self._related.power_mW[row][at])
+        victims, powers_mW = self._related.hidden(interferer)
+        power_mW = float(powers_mW[np.searchsorted(victims, link)])
         ratio_dB = sinr_dB(float(self._signals.signal_dBm[link]), self._noise_dBm, power_mW)
         airtime = data_airtime_fraction(rate_Mbps, self._timing)
         return capture_success(airtime, ratio_dB, self._decode_threshold_dB(link))
