@@ -109,6 +109,6 @@ class InterferenceTables:
             return "arrays of entries of different lengths"
         if entries and not 0 <= int(self.links.min()) <= int(self.links.max()) < self.link_count:
             return "entries about links that do not exist"
-        if (self.hidden_units[np.logical_not(self.is_conflict)] < 1).any():
+        if np.any(self.hidden_units < 1, where=~self.is_conflict):
             return "a hidden power below one quantum"
         return None

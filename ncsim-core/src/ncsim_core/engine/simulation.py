@@ -64,7 +64,8 @@ class Simulation:
         reach: How far a refresh looks; ``Reach.GLOBAL`` is the slow oracle of the tests.
 
     Raises:
-        PluginError: The DAG source's injections are out of order or ambiguous.
+        PluginError: The DAG source's injections are out of order or ambiguous, or the interference
+            model's tables contradict themselves.
     """
 
     def __init__(

@@ -85,7 +85,7 @@ def _arrays_of(loads: Loads) -> tuple[list[ShareRow], kernel.Arrays]:
                 count_shift=loads.count_shift,
                 limits=_padded([(*each, GREATEST) for each in tables.limits]),
                 share_rows=_share_rows(tables, rows),
-                shares=np.full((len(rows), _most_stations(tables) + 1), np.nan),
+                shares=np.full((len(rows), loads.most_contenders + 2), np.nan),
             ),
         )
     return _ARRAYS[loads]
@@ -95,12 +95,6 @@ def _share_rows(tables: InterferenceTables, rows: Sequence[ShareRow]) -> NDArray
     """Return by link and level the place of its row of shares."""
     place = {id(row): number for number, row in enumerate(rows)}
     return _padded([tuple(place[id(row)] for row in each) for each in tables.shares])
-
-
-def _most_stations(tables: InterferenceTables) -> int:
-    """Return how many stations can share the channel at most."""
-    conflicts = np.bincount(tables.links[tables.is_conflict], minlength=1)
-    return 1 + int(conflicts.max(initial=0))
 
 
 def _padded(rows: Sequence[tuple[int, ...]]) -> NDArray[np.int64]:

@@ -15,6 +15,7 @@ from ncsim_core.contracts.interference_tables import InterferenceTables
 from ncsim_core.network import LinkIndex
 
 LOAD_BITS = 62  # of a signed 64-bit number, one spare
+ENTRIES_PER_BLOCK = 1 << 20  # so that no second array of all entries is needed
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,11 +25,13 @@ class Loads:
     Args:
         tables: Which links affect which.
         count_shift: How many bits of a load the hidden sum has.
+        most_contenders: How many contenders a link can have at most.
         fits: Whether no set of active links can overflow a load.
     """
 
     tables: InterferenceTables
     count_shift: int
+    most_contenders: int
     fits: bool
 
     @property
@@ -89,11 +92,19 @@ class Loads:
 
 def loads_from(tables: InterferenceTables) -> Loads:
     """Return the loads that tables amount to."""
-    hidden = ~tables.is_conflict
-    count = tables.link_count
-    most_hidden = int(np.bincount(tables.links[hidden], minlength=count).max(initial=0))
-    most_contenders = int(np.bincount(tables.links[~hidden], minlength=count).max(initial=0))
-    most_units = int(tables.hidden_units[hidden].max(initial=0))
-    count_shift = most_units.bit_length() + most_hidden.bit_length()
+    is_hidden = ~tables.is_conflict
+    most_units = int(np.max(tables.hidden_units, initial=0, where=is_hidden))
+    count_shift = most_units.bit_length() + _most_affecting(tables, is_hidden).bit_length()
+    most_contenders = _most_affecting(tables, tables.is_conflict)
     fits = count_shift + most_contenders.bit_length() <= LOAD_BITS
-    return Loads(tables, count_shift, fits)
+    return Loads(tables, count_shift, most_contenders, fits)
+
+
+def _most_affecting(tables: InterferenceTables, is_counted: NDArray[np.bool_]) -> int:
+    """Return the greatest number of counted entries about one link."""
+    counts = np.zeros(tables.link_count, np.int64)
+    for start in range(0, len(tables.links), ENTRIES_PER_BLOCK):
+        block = slice(start, start + ENTRIES_PER_BLOCK)
+        links = tables.links[block][is_counted[block]]
+        counts += np.bincount(links, minlength=tables.link_count)
+    return int(counts.max(initial=0))
