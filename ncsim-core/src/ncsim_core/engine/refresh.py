@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
 from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
-from ncsim_core.engine.events import TRANSFER_COMPLETE
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Switched
 from ncsim_core.engine.observer import RateCause, rate_change_of
@@ -89,16 +88,13 @@ def reschedule_completions(moves: Iterable[Move], state: State) -> None:
     """Replace completions: now if nothing is left, none while the rate is zero."""
     queue, now_us = state.queue, state.now_us
     for number, flow, rate_MBps, _ in moves:
-        if flow.completion is not None:
-            queue.cancel(flow.completion)
-            flow.completion = None
         if flow.remaining_MB <= 0:
-            at_us = now_us
+            queue.complete_at(now_us, number, flow.entry.rank)
         elif rate_MBps > 0:
-            at_us = now_us + service_time_us(flow.remaining_MB, rate_MBps)
+            after_us = service_time_us(flow.remaining_MB, rate_MBps)
+            queue.complete_at(now_us + after_us, number, flow.entry.rank)
         else:
-            continue
-        flow.completion = queue.push(at_us, TRANSFER_COMPLETE, number, flow.entry.rank)
+            queue.pause(number)
 
 
 def report_rates(transfer: Transfer, change: Change, moves: Sequence[Move], state: State) -> None:

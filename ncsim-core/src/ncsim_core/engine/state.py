@@ -66,7 +66,6 @@ class Transfer:
         credited_us: Up to when service has been credited.
         rate_MBps: Service rate since then; 0 means that it is paused.
         bottleneck: First link of the route with the least share.
-        completion: Ticket of its completion event, ``None`` while paused.
         started_us: When byte service began.
         ended_us: When the last byte was served.
     """
@@ -79,7 +78,6 @@ class Transfer:
     credited_us: Instant = 0
     rate_MBps: float = 0.0
     bottleneck: LinkIndex = -1
-    completion: int | None = None
     started_us: Instant | None = None
     ended_us: Instant | None = None
 

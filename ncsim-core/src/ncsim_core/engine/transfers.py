@@ -1,6 +1,6 @@
 """Transfers: created when their producer ends, started after latency, completed."""
 
-from ncsim_core.engine.events import TASK_READY, TRANSFER_COMPLETE, TRANSFER_START
+from ncsim_core.engine.events import TASK_READY, TRANSFER_START
 from ncsim_core.engine.refresh import occupy, refresh, release
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -34,13 +34,13 @@ def start_transfer(number: int, state: State, setup: Setup) -> None:
     if transfer.remaining_MB > 0:
         refresh(transfer, occupy, state, setup)
     else:
-        state.queue.push(state.now_us, TRANSFER_COMPLETE, number, transfer.entry.rank)
+        state.queue.complete_at(state.now_us, number, transfer.entry.rank)
 
 
 def complete_transfer(number: int, state: State, setup: Setup) -> None:
     """End byte service, free the route and tell the waiting task."""
     transfer = state.transfers[number]
-    transfer.ended_us, transfer.completion = state.now_us, None
+    transfer.ended_us = state.now_us
     for observer in state.observers:
         observer.transfer_ended(state.now_us, number)
     if transfer.entry.size_MB > 0:
