@@ -15,7 +15,7 @@ SETUP_INPUTS := pyproject.toml constraints.txt ncsim-core/pyproject.toml $(PLUGI
 EDITABLE := -e ./ncsim-core[testing] $(PLUGINS:%=-e ./%)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run paper test check format schemas viewer constraints clean
+.PHONY: help setup run paper test bench bench-peers check format schemas viewer constraints clean
 
 help:  ## Show what make can do
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -55,6 +55,12 @@ paper: $(DEV_STAMP)  ## Reproduce every workflow table and figure of the paper, 
 
 test: $(DEV_STAMP)  ## Run all tests, on every core
 	$(BIN)/python -m pytest -n auto
+
+bench: $(DEV_STAMP)  ## Measure every target (BENCH=--all: also what takes minutes), table in out/bench.md
+	@$(BIN)/python benchmarks/bench.py $(BENCH)
+
+bench-peers: $(DEV_STAMP)  ## Set up the published ncsim and SimGrid for bench to compare with
+	@sh benchmarks/peers/setup.sh $(PYTHON)
 
 check: $(DEV_STAMP)  ## Formatting, lint, types, import rules
 	$(BIN)/ruff format --check .

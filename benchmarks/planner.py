@@ -5,6 +5,7 @@ are layered, each task with three parents in the layer above. ``first`` is what 
 a network pays once (order of virtual links), ``plan`` what every plan pays.
 
     python benchmarks/planner.py [--saga-up-to TASKS]
+    python benchmarks/planner.py --only NODES TASKS    # median of 5 plans by HEFT alone
 """
 
 import argparse
@@ -25,6 +26,7 @@ from ncsim_saga.native.processors import Processors
 from ncsim_saga.planning import PlanRequest, plan_with_saga
 from ncsim_saga.schedulers.native_scheduler import processors_for
 from ncsim_saga.virtual_network import SAME_NODE_MBps, VirtualNetwork
+from timing import cpu_median_s
 
 T = TypeVar("T")
 Algorithm = Callable[[Instance, Processors], list[int]]
@@ -137,6 +139,16 @@ def measure(case: Case, saga_up_to: int) -> None:
         )
 
 
+def measure_heft(nodes: int, tasks: int) -> None:
+    """Print the median time of a plan by HEFT, all costs and sizes different."""
+    case = next(
+        each for each in CASES if (each.nodes, each.tasks) == (nodes, tasks) and not each.has_ties
+    )
+    dag, network = case.dag(), planning_network(case.network())
+    native_plan("heft", dag, network)
+    print(f"heft {cpu_median_s(lambda: native_plan('heft', dag, network)):.5f} s")
+
+
 def main() -> None:
     """Measure all cases."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
@@ -146,7 +158,11 @@ def main() -> None:
         default=10_000,
         help="largest tasks x nodes for which SAGA is asked as well (default: %(default)s)",
     )
+    parser.add_argument("--only", nargs=2, type=int, metavar=("NODES", "TASKS"))
     options = parser.parse_args()
+    if options.only:
+        measure_heft(*options.only)
+        return
     import_module("saga.schedulers")  # not part of any plan
     print("plan    nodes   tasks  width  sizes  first ms   plan ms   target    SAGA ms    ratio")
     for case in CASES:

@@ -12,11 +12,17 @@ import json
 import math
 import random
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any, cast
 
+from ncsim_core.api import simulate
+from ncsim_core.contracts.routing_model import RoutingModel
+from ncsim_core.engine.setup import Limits
 from ncsim_core.generators.dags import Form, dag_of
 from ncsim_core.generators.paper import paper_grid
 from ncsim_core.network import Link, Network
+from ncsim_core.scenario.assembly import assemble
 from ncsim_core.scenario.making import make_scenario
 from ncsim_core.scenario.model import Scenario
 from ncsim_core.workflow import DAG
@@ -77,6 +83,57 @@ def _interference_row(name: str) -> object:
     if name != "csma_bianchi":
         return name
     return {"type": name, "options": {"outage_floor_factor": OUTAGE_FLOOR}}
+
+
+def write_for_peers(scenario: Scenario, folder: Path) -> dict[str, Path]:
+    """Write a workload of one DAG for other tools, with ncsim's placements and routes.
+
+    Returns:
+        ``text``: numbers for the SimGrid driver; ``yaml`` and ``routes``: for the published ncsim.
+    """
+    network, model = _rated(scenario)
+    placement = simulate(scenario, limits=Limits(max_events=1)).placement
+    dag = scenario.injections[0].dag
+    node_of = {task.id: network.node_index[placement[dag.id, task.id]] for task in dag.tasks}
+    pairs = {(node_of[each.source], node_of[each.target]) for each in dag.dependencies}
+    routes = {(s, t): model.route(s, t, network) or () for s, t in sorted(pairs) if s != t}
+    index = dag.task_index
+    blocks = [
+        [f"{node.compute_capacity}" for node in network.nodes],
+        [f"{rate_MBps}" for rate_MBps in network.bandwidth_MBps],
+        [f"{s} {t} {len(way)} {' '.join(map(str, way))}" for (s, t), way in routes.items()],
+        [f"{task.compute_cost} {node_of[task.id]}" for task in dag.tasks],
+        [f"{index[d.source]} {index[d.target]} {d.data_size_MB}" for d in dag.dependencies],
+    ]
+    names, links = network.nodes, network.links
+    rows = [
+        (names[s].id, names[t].id, [links[i].id for i in way]) for (s, t), way in routes.items()
+    ]
+    texts = {
+        "text": "".join(f"{line}\n" for block in blocks for line in (len(block), *block)),
+        "yaml": json.dumps(_pinned(scenario, placement)),
+        "routes": json.dumps(rows),
+    }
+    files = {name: folder / f"workload.{name}" for name in texts}
+    for name, path in files.items():
+        path.write_text(texts[name], encoding="utf-8")
+    return files
+
+
+def _rated(scenario: Scenario) -> tuple[Network, RoutingModel]:
+    assembly = assemble(scenario)
+    return assembly.network, assembly.models.routing
+
+
+def _pinned(scenario: Scenario, placement: Mapping[tuple[str, str], str]) -> dict[str, object]:
+    """Return a scenario as the published ncsim reads it, every task on its node."""
+    body = cast("dict[str, Any]", scenario.to_document()["scenario"])
+    for link in body["network"]["links"]:
+        del link["medium"]
+    for dag in body["dags"]:
+        for task in dag["tasks"]:
+            task["pinned_to"] = placement[dag["id"], task["id"]]
+    return {"scenario": {**body, "config": {"scheduler": "manual"}}}
 
 
 def main() -> None:
