@@ -21,12 +21,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from engine import SIZES, TARGETS_s
+
 HERE: Final = Path(__file__).parent
 OUTPUT: Final = HERE.parent / "out" / "bench.md"
-SIZES: Final = ((5, 1_000), (10, 1_000), (20, 100), (20, 1_000), (20, 10_000))
-NONE_TARGETS_s: Final = {(5, 1_000): 0.020, (20, 1_000): 0.045, (20, 10_000): 0.9}
-PURE_TARGETS_s: Final = {(5, 1_000): 0.2, (20, 100): 0.05}
-FAST_TARGETS_s: Final = {(5, 1_000): 0.06, (20, 1_000): 0.5, (20, 10_000): 10.0}
 HEADINGS: Final = ("what", "target", "measured", "ratio", "verdict")
 
 
@@ -62,6 +60,7 @@ def all_lines() -> Iterator[Line]:
 
 
 def _small_lines() -> Iterator[Line]:
+    yield Line("this machine: 2,000,000 turns of a Python loop", ("timing.py",))
     over = r"([\d.]+) s over"
     yield Line("start: ncsim --help, over python", ("start_up.py", "help"), over, 0.100)
     yield Line("start: ncsim run, 3 tasks, HEFT", ("start_up.py", "run"), target=0.300)
@@ -77,17 +76,14 @@ def _engine_lines() -> Iterator[Line]:
     for when in ("first", "again"):
         name = f"run: the paper's 108 grid runs with scheduling, {when}"
         yield Line(name, ("engine.py", "paper_runs"), rf"{when}: ([\d.]+) s", 0.25)
-    forms = [("none", NONE_TARGETS_s), ("pure", PURE_TARGETS_s)]
-    if importlib.util.find_spec("numba"):
-        forms.append(("fast", FAST_TARGETS_s))
-    for form, targets_s in forms:
+    for form in ("none", "pure", "fast") if importlib.util.find_spec("numba") else ("none", "pure"):
         model = {"none": "none", "pure": "csma_bianchi", "fast": "csma_bianchi, kernels"}[form]
         for size, tasks in SIZES:
             yield Line(
                 f"run: {model}, {size}x{size} x {tasks:,}",
                 ("engine.py", "one", form, str(size), str(tasks)),
                 r"tasks\s+([\d.]+) s",
-                targets_s.get((size, tasks)),
+                TARGETS_s.get((form, size, tasks)),
                 is_pure=form != "fast",
             )
     for model in ("none", "csma_bianchi"):

@@ -15,3 +15,15 @@ def cpu_median_s(work: Callable[[], object], repeats: int = 5) -> float:
         work()
         spent.append(time.process_time() - started_s)
     return statistics.median(spent)
+
+
+def fixed_work() -> int:
+    """Do plain Python work that never changes, to see how fast this machine is just now."""
+    total = 0
+    for number in range(2_000_000):
+        total += number & 7
+    return total
+
+
+if __name__ == "__main__":
+    print(f"fixed work {cpu_median_s(fixed_work):.4f} s")
