@@ -82,6 +82,15 @@ def test_a_run_that_was_torn_off_is_drawn_as_far_as_it_went(run_folder, tmp_path
         FIGURES[kind].draw(load_run(run_folder), tmp_path / "x.svg")
 
 
+@pytest.mark.parametrize("figure", [dag, topology])
+def test_what_is_too_large_for_names_is_drawn_without(run_folder, tmp_path, monkeypatch, figure):
+    monkeypatch.setattr(figure, "NAMED_UP_TO", 1)
+
+    figure.draw(load_run(run_folder), tmp_path / "x.svg")
+
+    assert not {"A", "a"} & set(words_in(tmp_path / "x.svg"))
+
+
 def test_what_cannot_be_drawn_is_said(run_folder, tmp_path, capsys):
     trace = run_folder / "trace.jsonl"
     text = trace.read_text()

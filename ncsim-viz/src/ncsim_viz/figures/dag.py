@@ -18,10 +18,13 @@ Point: TypeAlias = tuple[float, float]
 MAX_DAGS: Final = 12
 """DAGs that a figure shows, the first; its title says how many there are."""
 COLUMNS: Final = 3
+NAMED_UP_TO: Final = 300
+"""Tasks of a DAG; above, circles with names would only cover each other."""
 LAYER_in: Final = 1.15
 TASK_in: Final = 0.85
 MARGIN_in: Final = 0.9
 MAX_SIDE_in: Final = 60.0
+MAX_DOTS_in: Final = 10.0
 DARK: Final = frozenset({"#0072B2", "#009E73", "#000000"})
 """Colours that white text is read on."""
 SWEEPS: Final = 8
@@ -41,8 +44,10 @@ def draw(run: RunTrace, path: Path) -> None:
     rows = math.ceil(len(shown) / columns)
     panels = [_Panel(dag, run) for dag in shown]
     layers, widest = (max(getattr(each, name) for each in panels) for name in ("layers", "widest"))
-    width_in = min(MAX_SIDE_in, columns * (MARGIN_in + LAYER_in * layers))
-    height_in = min(MAX_SIDE_in, rows * (MARGIN_in + TASK_in * widest))
+    is_named = max(dag.task_count for dag in shown) <= NAMED_UP_TO
+    limit_in = MAX_SIDE_in if is_named else MAX_DOTS_in
+    width_in = min(limit_in, columns * (MARGIN_in + LAYER_in * layers))
+    height_in = min(limit_in, rows * (MARGIN_in + TASK_in * widest))
     colours = _colours(run)
     with figure_at(path, width_in, height_in) as figure:
         all_axes = list(figure.subplots(rows, columns, squeeze=False).flat)
@@ -91,6 +96,10 @@ def _chain(run: RunTrace) -> tuple[int, ...]:
 
 
 def _draw_panel(axes: Any, panel: _Panel, colours: dict[int | None, str]) -> None:  # noqa: ANN401
+    axes.set_title(plain(panel.dag.id), fontsize=8)
+    if len(panel.tasks) > NAMED_UP_TO:
+        _draw_many(axes, panel, colours)
+        return
     widest_MB = max((edge.size_MB for edge in panel.edges), default=0.0) or 1.0
     bold = set(pairwise(panel.chain))
     for edge in panel.edges:
@@ -106,8 +115,25 @@ def _draw_panel(axes: Any, panel: _Panel, colours: dict[int | None, str]) -> Non
         )  # fmt: skip
     for number in panel.tasks:
         _draw_task(axes, number, panel, colours[panel.run.tasks[number].node])
-    axes.set_title(plain(panel.dag.id), fontsize=8)
     axes.margins(0.12)
+
+
+def _draw_many(axes: Any, panel: _Panel, colours: dict[int | None, str]) -> None:  # noqa: ANN401
+    """Draw a DAG too large for names: dots and lines."""
+    from matplotlib.collections import LineCollection
+
+    bold = set(pairwise(panel.chain))
+    ends = [(edge.source, edge.target) for edge in panel.edges]
+    lines = LineCollection(
+        [[panel.places[source], panel.places[target]] for source, target in ends],
+        colors=["black" if each in bold else "0.75" for each in ends],
+        linewidths=[1.4 if each in bold else 0.3 for each in ends],
+        rasterized=True,
+    )
+    axes.add_collection(lines)
+    xs, ys = zip(*(panel.places[number] for number in panel.tasks), strict=True)
+    shades = [colours[panel.run.tasks[number].node] for number in panel.tasks]
+    axes.scatter(xs, ys, s=4, c=shades, zorder=3, rasterized=True)
 
 
 def _draw_task(axes: Any, number: int, panel: _Panel, colour: str) -> None:  # noqa: ANN401

@@ -12,8 +12,10 @@ from ncsim_viz.figures.words import plain
 Point: TypeAlias = tuple[float, float]
 
 SIDE_in: Final = 6.0
-NAMED_UP_TO: Final = 150
+NAMED_UP_TO: Final = 100
 """Nodes; above, names would only cover each other."""
+SPACIOUS: Final = 40
+"""Nodes that have room for circles of full size."""
 BEND: Final = 0.12
 """So that both directions of a pair are seen."""
 
@@ -25,7 +27,8 @@ def draw(run: RunTrace, path: Path) -> None:
         ScenarioError: matplotlib is not installed, or ``path`` is no picture's.
     """
     places, are_metres = _places(run)
-    with figure_at(path, SIDE_in, SIDE_in) as figure:
+    is_named = len(run.nodes) <= NAMED_UP_TO
+    with figure_at(path, SIDE_in, _height_in(places)) as figure:
         axes = figure.subplots()
         served_MB = _served_MB(run)
         _add_links(axes, run, places, served_MB)
@@ -33,7 +36,8 @@ def draw(run: RunTrace, path: Path) -> None:
         axes.set_aspect("equal")
         axes.margins(0.12)
         title = f"{plain(run.header.scenario or 'run')}: what links carried"
-        axes.set_title(f"{title}\nnumber in a node: tasks placed there", fontsize=9)
+        note = "number in a node: tasks placed there" if is_named else "filled: tasks placed there"
+        axes.set_title(f"{title}\n{note}", fontsize=9)
         axes.grid(visible=False)
         if are_metres:
             axes.set(xlabel="x (m)", ylabel="y (m)")
@@ -48,6 +52,18 @@ def _places(run: RunTrace) -> tuple[list[Point], bool]:
         return [(x or 0.0, y or 0.0) for x, y in known], True
     turns = (2 * math.pi * number / len(known) for number in range(len(known)))
     return [(math.sin(turn), math.cos(turn)) for turn in turns], False
+
+
+def _height_in(places: list[Point]) -> float:
+    """Return a height that leaves little of the paper empty."""
+    xs, ys = [x for x, _ in places], [y for _, y in places]
+    steepness = (max(ys) - min(ys)) / (max(xs) - min(xs) or 1.0)
+    return min(SIDE_in, max(3.0, 1.4 + SIDE_in * 0.75 * steepness))
+
+
+def _density(run: RunTrace) -> float:
+    """Return by how much smaller than in a small network everything is drawn, at most 1."""
+    return min(1.0, SPACIOUS / len(run.nodes))
 
 
 def _served_MB(run: RunTrace) -> list[float]:
@@ -65,15 +81,16 @@ def _add_links(axes: Any, run: RunTrace, places: list[Point], served_MB: list[fl
     from matplotlib.patches import FancyArrowPatch
 
     most_MB = max(served_MB, default=0.0) or 1.0
+    size = math.sqrt(_density(run))
     shades = colormaps["viridis_r"]
     for link, carried_MB in zip(run.links, served_MB, strict=True):
         share = carried_MB / most_MB
         arrow = FancyArrowPatch(
             places[link.source], places[link.target],
             connectionstyle=f"arc3,rad={BEND}", arrowstyle="-|>" if carried_MB else "-",
-            mutation_scale=8, shrinkA=9, shrinkB=9,
+            mutation_scale=8 * size, shrinkA=9 * size, shrinkB=9 * size,
             color=shades(0.1 + 0.9 * share) if carried_MB else "0.85",
-            linewidth=0.8 + 3.2 * share if carried_MB else 0.6,
+            linewidth=size * (0.8 + 3.2 * share if carried_MB else 0.6),
             linestyle="-" if link.medium == "wireless" else ":",
             zorder=2 + share if carried_MB else 1,
         )  # fmt: skip
@@ -90,7 +107,8 @@ def _add_nodes(axes: Any, run: RunTrace, places: list[Point]) -> None:  # noqa: 
             counts[task.node] += 1
     xs, ys = zip(*places, strict=True)
     colours = ["#0072B2" if count else "white" for count in counts]
-    axes.scatter(xs, ys, s=190, c=colours, edgecolors="0.3", linewidths=0.8, zorder=4)
+    size = _density(run)
+    axes.scatter(xs, ys, s=190 * size, c=colours, edgecolors="0.3", linewidths=0.8 * size, zorder=4)
     if len(places) > NAMED_UP_TO:
         return
     for node, count, (x, y) in zip(run.nodes, counts, places, strict=True):
