@@ -18,6 +18,7 @@ from ncsim_core.metrics import compute_metrics
 from ncsim_core.scenario.faults import ScenarioFaults
 from ncsim_core.scenario.loader import load_scenario, parse_scenario
 from ncsim_core.scenario.model import Scenario
+from ncsim_core.scenario.wfcommons import read_workflow
 from ncsim_core.sweep.reading import load_sweep
 from ncsim_core.trace.check import check_trace
 from ncsim_core.trace.export.perfetto import perfetto_text
@@ -78,6 +79,21 @@ def _run(scenario: Scenario) -> None:
     assert outcome.detail or outcome.status == "completed"
 
 
+def workflow(data: bytes) -> None:
+    """Read a workflow of WfCommons, as ``ncsim import`` does."""
+    path = FOLDER / "workflow.json"
+    path.write_bytes(data)
+    try:
+        found = read_workflow(path)
+    except NcsimError as error:
+        if not isinstance(error, ScenarioFaults):
+            return  # a workflow that is no DAG: the file is named, and the cycle or id
+        _expect_places(error)
+        return
+    assert found.external_MB >= 0
+    assert found.unread_MB >= 0
+
+
 def sweep(data: bytes) -> None:
     """Read a sweep and list its first runs."""
     path = FOLDER / "sweep.yaml"
@@ -127,5 +143,5 @@ def _expect_places(error: NcsimError) -> None:
 
 
 TARGETS: Final[dict[str, Callable[[bytes], None]]] = {
-    each.__name__: each for each in (scenario_yaml, scenario_json, published, sweep, trace)
+    each.__name__: each for each in (scenario_yaml, scenario_json, published, workflow, sweep, trace)
 }

@@ -46,6 +46,7 @@ VERBS: Final = {
     "import": Verb("ncsim_core.cli.importing:import_workflow", "Read a workflow of WfCommons."),
     "export": Verb("ncsim_core.cli.export:export", "Write a run in another form."),
     "plugins": Verb("ncsim_core.cli.plugins:app", "Look at plug-ins, check them, start one."),
+    "doctor": Verb("ncsim_core.cli.doctor:doctor", "Say whether this installation is in order."),
     "schema": Verb("ncsim_core.cli.schema:schema", "Print the JSON Schema of a file format."),
 }
 
