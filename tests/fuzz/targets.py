@@ -143,5 +143,6 @@ def _expect_places(error: NcsimError) -> None:
 
 
 TARGETS: Final[dict[str, Callable[[bytes], None]]] = {
-    each.__name__: each for each in (scenario_yaml, scenario_json, published, workflow, sweep, trace)
+    each.__name__: each
+    for each in (scenario_yaml, scenario_json, published, workflow, sweep, trace)
 }

@@ -1,5 +1,6 @@
 """From the parameters in a file to networks and DAGs."""
 
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -63,7 +64,11 @@ def dags_from(parameters: Parameters, draws: Draws) -> tuple[Injection, ...]:
 
 def _refuse_giants(generator: Generator, parameters: Parameters, count: int) -> None:
     """Raise if what is asked for would fill the memory before anybody could stop it."""
-    if count * generator.size(parameters) > MAX_PARTS:
+    try:
+        size: float = count * generator.size(_filled(parameters, generator.properties))
+    except OverflowError:  # 1e308 is a whole number, too
+        size = math.inf
+    if size > MAX_PARTS:
         raise ScenarioError(
             f"{generator.name} of this size has more than {MAX_PARTS:,} parts, the most allowed"
         )

@@ -35,7 +35,21 @@ def read_json(text: str) -> Any:  # noqa: ANN401 - whatever the text holds
     half = _HALF_PAIR.search(text) if "\\u" in text else None
     if half:
         raise json.JSONDecodeError("Half a surrogate pair", text, half.start("half"))
-    return json.loads(text, object_pairs_hook=_without_repeats, parse_int=_integer)
+    try:
+        return json.loads(text, object_pairs_hook=_without_repeats, parse_int=_integer)
+    except RepeatedKeyError:
+        read_loosely(text)  # what comes after the key may be no JSON, which is the greater fault
+        raise
+
+
+def read_loosely(text: str) -> Any:  # noqa: ANN401 - whatever the text holds
+    """Return the data in a JSON text, of keys that are given twice the last.
+
+    Raises:
+        json.JSONDecodeError: It is no JSON.
+        RecursionError: It is nested too deep for Python.
+    """
+    return json.loads(text, parse_int=_integer)
 
 
 def json_positions(text: str) -> Positions:

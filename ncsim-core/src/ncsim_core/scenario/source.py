@@ -24,6 +24,7 @@ from ncsim_core.scenario.json_reader import (
     json_positions,
     json_slips,
     read_json,
+    read_loosely,
 )
 from ncsim_core.scenario.positions import Positions, Slip, Span
 from ncsim_core.scenario.yaml_reader import read_yaml
@@ -235,7 +236,7 @@ def _read_as_json(source: Source) -> tuple[Any, list[Slip]] | None:
         span = Span(error.lineno, error.colno)
         raise source.lone_fault(f"not valid JSON: {error.msg}", span) from None
     except RepeatedKeyError:
-        return json.loads(source.text), json_slips(source.text)
+        return read_loosely(source.text), json_slips(source.text)
     except RecursionError:
         return None
 
@@ -245,7 +246,7 @@ def _positions(source: Source) -> Positions:
     if not source.may_be_json():
         return read_yaml(source.text, with_positions=True).positions
     try:
-        json.loads(source.text)
+        read_loosely(source.text)
     except (ValueError, RecursionError):
         return read_yaml(source.text, with_positions=True).positions
     return json_positions(source.text)
