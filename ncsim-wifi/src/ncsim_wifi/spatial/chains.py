@@ -86,62 +86,50 @@ def stationary(rates: ChainRates) -> FloatArray:
 
     Source: MODEL 3.10.
     """
-    spread = _by_boundary(rates)
-    residual = _boundary_inflow(rates, spread) - _boundary_outflow(rates)
-    residual[:, -1, :] = spread.sum(axis=(1, 2))
-    right = np.zeros((len(residual), BOUNDARY, 1))
+    by_state = ChainRates(*(rate.transpose(1, 2, 0)[..., None].copy() for rate in rates))
+    out = np.asarray(sum(by_state))
+    spread = _by_boundary(by_state, out)
+    residual = _boundary_inflow(by_state, spread)
+    each = np.arange(BOUNDARY)
+    residual[each, :, each] -= np.concatenate([out[0], out[1:, 0]])[..., 0]
+    residual[-1] = spread.sum(axis=(0, 1))
+    right = np.zeros((len(rates.common), BOUNDARY, 1))
     right[:, -1] = 1.0
-    boundary = np.linalg.solve(residual, right)
-    joint = np.maximum(0.0, (spread @ boundary[:, None])[..., 0])
+    boundary = np.linalg.solve(residual.transpose(1, 0, 2), right)[..., 0]
+    joint = np.maximum(0.0, np.einsum("abcx,cx->cab", spread, boundary))
     return np.asarray(joint / joint.sum(axis=(1, 2), keepdims=True))
 
 
-def _by_boundary(rates: ChainRates) -> FloatArray:
-    """Return P(a, b) as linear in the boundary states, shape (chains, 7, 7, 13)."""
-    count = len(rates.common)
-    spread = np.zeros((count, STAGES, STAGES, BOUNDARY))
+def _by_boundary(rates: ChainRates, out: FloatArray) -> FloatArray:
+    """Return P(a, b) as linear in the boundary states, shape (7, 7, chains, 13)."""
+    spread = np.zeros((STAGES, STAGES, rates.common.shape[2], BOUNDARY))
     stage = np.arange(STAGES)
-    spread[:, 0, stage, stage] = 1.0
-    spread[:, stage[1:], 0, stage[1:] + STAGES - 1] = 1.0
-    out = rates.success_a + rates.success_b + rates.common + rates.loss_a + rates.loss_b
-    into_common, into_a, into_b = (
-        rate[..., None] for rate in (rates.common, rates.loss_a, rates.loss_b)
-    )
-    for diagonal in range(2, BOUNDARY):
-        a = np.arange(max(1, diagonal - STAGES + 1), min(STAGES - 1, diagonal - 1) + 1)
-        b = diagonal - a
-        spread[:, a, b] = (
-            into_common[:, a - 1, b - 1] * spread[:, a - 1, b - 1]
-            + into_a[:, a - 1, b] * spread[:, a - 1, b]
-            + into_b[:, a, b - 1] * spread[:, a, b - 1]
-        ) / out[:, a, b, None]
+    spread[0, stage, :, stage] = 1.0
+    spread[stage[1:], 0, :, stage[1:] + STAGES - 1] = 1.0
+    into_common = rates.common[:-1, :-1] / out[1:, 1:]
+    into_a, into_b = rates.loss_a[:-1, 1:] / out[1:, 1:], rates.loss_b[1:, :-1] / out[1:, 1:]
+    for a in range(1, STAGES):
+        for b in range(1, STAGES):
+            cell = np.multiply(into_common[a - 1, b - 1], spread[a - 1, b - 1], out=spread[a, b])
+            cell += into_a[a - 1, b - 1] * spread[a - 1, b]
+            cell += into_b[a - 1, b - 1] * spread[a, b - 1]
     return spread
 
 
-def _boundary_outflow(rates: ChainRates) -> FloatArray:
-    """Return the outflow of the boundary states on a diagonal, shape (chains, 13, 13)."""
-    out = rates.success_a + rates.success_b + rates.common + rates.loss_a + rates.loss_b
-    flow = np.zeros((len(out), BOUNDARY, BOUNDARY))
-    each = np.arange(BOUNDARY)
-    flow[:, each, each] = np.concatenate([out[:, 0, :], out[:, 1:, 0]], axis=1)
-    return flow
-
-
 def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:
-    """Return what flows into the boundary states, shape (chains, 13, 13)."""
+    """Return what flows into the boundary states, shape (13, chains, 13)."""
     last = STAGES - 1
-    inflow = np.zeros((len(spread), BOUNDARY, BOUNDARY))
-    top = inflow[:, :STAGES]  # states (0, b)
-    top += np.einsum("cab,cabx->cbx", rates.success_a, spread)
-    top += rates.loss_a[:, last, :, None] * spread[:, last]
-    top[:, 1:] += rates.loss_b[:, 0, :-1, None] * spread[:, 0, :-1]
-    top[:, 1:] += rates.common[:, last, :-1, None] * spread[:, last, :-1]
-    side = np.zeros((len(spread), STAGES, BOUNDARY))  # states (a, 0)
-    side += np.einsum("cab,cabx->cax", rates.success_b, spread)
-    side += rates.loss_b[:, :, last, None] * spread[:, :, last]
-    side[:, 1:] += rates.loss_a[:, :-1, 0, None] * spread[:, :-1, 0]
-    side[:, 1:] += rates.common[:, :-1, last, None] * spread[:, :-1, last]
-    top[:, 0] += side[:, 0]
-    top[:, 0] += rates.common[:, last, last, None] * spread[:, last, last]
-    inflow[:, STAGES:] = side[:, 1:]
+    inflow = np.zeros((BOUNDARY, *spread.shape[2:]))
+    top = inflow[:STAGES]  # states (0, b)
+    top += (rates.success_a * spread).sum(axis=0)
+    top += rates.loss_a[last] * spread[last]
+    top[1:] += rates.loss_b[0, :-1] * spread[0, :-1]
+    top[1:] += rates.common[last, :-1] * spread[last, :-1]
+    side = (rates.success_b * spread).sum(axis=1)  # states (a, 0)
+    side += rates.loss_b[:, last] * spread[:, last]
+    side[1:] += rates.loss_a[:-1, 0] * spread[:-1, 0]
+    side[1:] += rates.common[:-1, last] * spread[:-1, last]
+    top[0] += side[0]
+    top[0] += rates.common[last, last] * spread[last, last]
+    inflow[STAGES:] = side[1:]
     return inflow

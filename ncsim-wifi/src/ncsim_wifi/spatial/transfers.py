@@ -74,6 +74,8 @@ class Paths:
                 slowest = min(clique, key=lambda hop: (clean_MBps[hop], hop))
                 limits.append((limit_MBps, on_air[slowest]))
         rate_MBps, at = min(limits)
+        if len(route) == 1:
+            return RouteAlone(rate_MBps, route[at], rate_MBps)
         ((coupled_MBps, _),) = self.coupled([route])
         return RouteAlone(rate_MBps, route[at], coupled_MBps)
 
