@@ -14,7 +14,7 @@ FORMS = {"text/plain", "image/svg+xml", "text/html"}
 
 
 def test_a_run_has_three_forms(run_folder):
-    bundle = show(run_folder)._repr_mimebundle_()
+    bundle = show(run_folder)._repr_mimebundle_(include=None, exclude=None)  # as IPython asks
 
     assert bundle.keys() == FORMS
     assert "example: completed" in bundle["text/plain"]

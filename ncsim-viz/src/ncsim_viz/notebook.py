@@ -39,7 +39,7 @@ class RunView:
         self.report = report
 
     def _repr_mimebundle_(
-        self, include: Container[str] | None = None, exclude: Container[str] = ()
+        self, include: Container[str] | None = None, exclude: Container[str] | None = None
     ) -> dict[str, str]:
         """Return the run in each form that a front end may choose from."""
         forms = {"text/plain": drawn(self.chart, TEXT_SIZE), "image/svg+xml": svg_gantt(self.chart)}
@@ -48,7 +48,7 @@ class RunView:
         return {
             kind: text
             for kind, text in forms.items()
-            if (include is None or kind in include) and kind not in exclude
+            if (include is None or kind in include) and kind not in (exclude or ())
         }
 
     def html(self) -> str:
