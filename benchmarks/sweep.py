@@ -73,8 +73,8 @@ def compare_costs() -> None:
     print(f"the sweep adds {more:.2f} ms per run (medians of {TURNS} turns of {BATCH} runs)")
 
 
-def carry_out(what: str, runs: int, study: Path, stop_after: int | None = None) -> None:
-    """Carry out the sweep, or a part of it, and print what it took."""
+def carry_out(what: str, runs: int, study: Path, stop_after: int | None = None) -> float:
+    """Carry out the sweep, or a part of it, print what it took and return the seconds."""
     started_s, own_s, theirs_s = time.perf_counter(), time.process_time(), children_s()
     early_MB = 0.0
     done = 0
@@ -88,10 +88,11 @@ def carry_out(what: str, runs: int, study: Path, stop_after: int | None = None) 
         time.sleep(0.05)
     spent_s = time.perf_counter() - started_s
     own_s, theirs_s = time.process_time() - own_s, children_s() - theirs_s
-    print(f"{what}: {done} runs in {spent_s:.1f} s on the clock, {done / spent_s:.0f}/s")
+    print(f"{what}: up to run {done} after {spent_s:.1f} s on the clock, {done / spent_s:.0f}/s")
     print(f"  processor time {own_s:.1f} s here and {theirs_s:.1f} s in the workers")
     late_MB = memory_MB(resource.RUSAGE_SELF)
     print(f"  memory here {early_MB:.0f} MB after a tenth, {late_MB:.0f} MB at the end")
+    return spent_s
 
 
 def children_s() -> float:
@@ -111,10 +112,11 @@ def main() -> None:
     compare_costs()
     with tempfile.TemporaryDirectory() as folder:
         study = Path(folder) / "study"
-        carry_out("first half", runs, study, stop_after=runs // 2)
-        carry_out("resumed", runs, study)
+        whole_s = carry_out("first half", runs, study, stop_after=runs // 2)
+        whole_s += carry_out("resumed", runs, study)
         carry_out("asked for again", runs, study)
         size_MB = (study / "results.sqlite").stat().st_size / 1e6
+    print(f"{runs} runs in {whole_s:.1f} s on the clock, stopped and resumed once")
     print(f"largest worker {memory_MB(resource.RUSAGE_CHILDREN):.0f} MB, study {size_MB:.1f} MB")
 
 
