@@ -1,5 +1,6 @@
 """What a sweep varies: axes of values, and the walk through all their combinations."""
 
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -84,7 +85,12 @@ def repeated(values: Sequence[Value]) -> Iterator[int]:
     >>> list(repeated([3, 4, 3]))
     [2]
     """
-    return (number for number, value in enumerate(values) if value in values[:number])
+    seen: set[str] = set()
+    for number, value in enumerate(values):
+        text = json.dumps(value, sort_keys=True)
+        if text in seen:
+            yield number
+        seen.add(text)
 
 
 def combinations(axes: Sequence[Axis], seeds: Sequence[int]) -> Iterator[Run]:

@@ -19,6 +19,8 @@ from ncsim_core.sweep.schema import generator_schema, structure
 
 CONFIG: Path = ("scenario", "config")
 BASE: Path = ("sweep", "base")
+MAX_TRIED = 100
+"""Values per axis that are put into a scenario before anything runs."""
 
 
 def frame_problems(document: Mapping[str, Any], registry: Registry) -> list[Problem]:
@@ -28,7 +30,11 @@ def frame_problems(document: Mapping[str, Any], registry: Registry) -> list[Prob
 
 
 def value_problems(plan: SweepPlan, registry: Registry) -> Iterator[Problem]:
-    """Yield what is wrong with the base, then with each value put into it alone."""
+    """Yield what is wrong with the base, then with each value put into it alone.
+
+    Of an axis with very many values, some are tried, the last among them; whatever is wrong with
+    another one makes failed runs.
+    """
     first = Run(
         0, tuple(axis.levels[0][i] for axis in plan.axes for i in range(len(axis.paths))), 1
     )
@@ -41,13 +47,25 @@ def value_problems(plan: SweepPlan, registry: Registry) -> Iterator[Problem]:
         told.add(problem.message)
         yield problem
     for axis in plan.axes:
-        for number, level in enumerate(axis.levels[1:], start=1):
+        for number in _tried(len(axis.levels)):
+            level = axis.levels[number]
             values = plan.values_of(first) | dict(zip(axis.paths, level, strict=True))
             run = Run(0, tuple(values[column] for column in plan.columns), 1)
             for problem in _problems_at(plan, run, registry, (axis, number)):
                 if problem.message not in told:
                     told.add(problem.message)
                     yield problem
+
+
+def _tried(levels: int) -> list[int]:
+    """Return which values of an axis are tried, beside the first: all, or evenly spread ones.
+
+    >>> _tried(3), len(_tried(100_000)), _tried(100_000)[-1]
+    ([1, 2], 100, 99999)
+    """
+    if levels <= MAX_TRIED:
+        return list(range(1, levels))
+    return [number * (levels - 1) // MAX_TRIED for number in range(1, MAX_TRIED + 1)]
 
 
 def _unknown_parameters(plan: SweepPlan, values: Mapping[str, Any]) -> Iterator[Problem]:
