@@ -87,7 +87,7 @@ def test_a_wider_confidence_gives_wider_intervals(study):
     [
         (("--measure", "makespan"), "did you mean 'makespan_s'"),
         (("--table", "paired", "--along", "network.nodes"), "is not varied in this study"),
-        (("--table", "policies", "--mode", "scheduler"), "needs two values, one of them 'none'"),
+        (("--table", "policies", "--mode", "scheduler"), "needs 'none' for Solo"),
         (("--format", "parquet"), "give --output FILE"),
     ],
 )

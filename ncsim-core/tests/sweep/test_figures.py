@@ -131,7 +131,7 @@ def test_text_in_pictures_stays_text(tmp_path):
     [
         (lambda p: draw_means(PAYLOADS, "payload", "makespan_s", p), "'payload' is not varied"),
         (lambda p: draw_means(PAYLOADS, "payload_MB", "makespan", p), "mean 'makespan_s'"),
-        (lambda p: draw_slowdown(POLICIES, "case", "scheduler", p), "needs two values, one of the"),
+        (lambda p: draw_slowdown(POLICIES, "case", "scheduler", p), "needs 'none' for Solo"),
         (lambda p: draw_means(PAYLOADS, "payload_MB", "events", p.with_suffix(".gif")), "ends in"),
     ],
 )

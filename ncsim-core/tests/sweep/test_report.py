@@ -66,6 +66,21 @@ def test_an_inversion_is_told_with_its_regret():
     assert totals["rank inversions"] == 1
 
 
+def test_of_several_modes_one_is_said_to_mean_full():
+    more = [("heft", "csma_spatial", 1, 6.0), ("cpop", "csma_spatial", 1, 9.0)]
+    table = runs([*((*row[:3], row[4]) for row in INVERSION.rows), *more])
+
+    with pytest.raises(ScenarioError, match="say which means Full"):
+        policies(table, "scheduler", "interference")
+    with pytest.raises(ScenarioError, match="has no 'csma' beside 'none'"):
+        policies(table, "scheduler", "interference", full="csma")
+    found = [
+        policies(table, "scheduler", "interference", full=full).to_dicts()[0]["regret"]
+        for full in ("csma_bianchi", "csma_spatial")
+    ]
+    assert found == [0.5, 0.0]
+
+
 def test_differences_are_taken_seed_by_seed():
     table = paired(
         runs(

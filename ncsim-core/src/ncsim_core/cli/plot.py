@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from ncsim_core.cli.studies import (
+    FullMode,
     Measure,
     ModeColumn,
     PolicyColumn,
@@ -43,6 +44,7 @@ def plot(  # noqa: PLR0913 - one parameter per option
     measure: Measure = "makespan_s",
     policy: PolicyColumn = "scheduler",
     mode: ModeColumn = "interference",
+    full: FullMode = None,
 ) -> None:
     """Draw means or slowdowns of a study along a column, or regret by case; or draw a run.
 
@@ -62,11 +64,11 @@ def plot(  # noqa: PLR0913 - one parameter per option
     runs = runs_of(study)
     chosen = figure or (FigureKind.REGRET if along is None else FigureKind.MEANS)
     if chosen is FigureKind.REGRET:
-        draw_regret(runs, policy, mode, output)
+        draw_regret(runs, policy, mode, output, full)
     elif along is None:
         raise ScenarioError(f"--figure {chosen} needs --along COLUMN, the column of its x axis")
     elif chosen is FigureKind.MEANS:
         draw_means(runs, along, measure, output)
     else:
-        draw_slowdown(runs, along, mode, output)
+        draw_slowdown(runs, along, mode, output, full)
     typer.echo(f"wrote {output}", err=True)

@@ -8,6 +8,7 @@ import typer
 
 from ncsim_core.cli.studies import (
     Digits,
+    FullMode,
     Measure,
     ModeColumn,
     PolicyColumn,
@@ -57,6 +58,7 @@ def report(  # noqa: PLR0913 - one parameter per option
     measure: Measure = "makespan_s",
     policy: PolicyColumn = "scheduler",
     mode: ModeColumn = "interference",
+    full: FullMode = None,
     along: Annotated[str | None, typer.Option(help="Column of --table paired.")] = None,
     confidence: Annotated[
         float, typer.Option(min=0.5, max=0.9999, help="Of the intervals.")
@@ -82,11 +84,11 @@ def report(  # noqa: PLR0913 - one parameter per option
         case ReportTable.PAIRED:
             table = paired(runs, along or policy, measure, confidence)
         case ReportTable.POLICIES:
-            table = policies(runs, policy, mode)
+            table = policies(runs, policy, mode, full=full)
         case ReportTable.CASES:
-            table = policy_cases(policies(runs, policy, mode), confidence)
+            table = policy_cases(policies(runs, policy, mode, full=full), confidence)
         case ReportTable.TOTALS:
-            table = policy_totals(policies(runs, policy, mode))
+            table = policy_totals(policies(runs, policy, mode, full=full))
     _put(table, form, digits, output)
 
 

@@ -18,6 +18,10 @@ PolicyColumn: TypeAlias = Annotated[
 ModeColumn: TypeAlias = Annotated[
     str, typer.Option("--mode", help="Column that tells Solo (none) from Full.")
 ]
+FullMode: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--full", help="Value that means Full, if --mode has several besides none."),
+]
 Digits: TypeAlias = Annotated[
     int, typer.Option("--digits", min=0, max=12, help="After the point, in tables for people.")
 ]

@@ -54,7 +54,7 @@ def draw_means(runs: Table, along: str, measure: str, path: Path) -> None:
     _draw_lines(lines, others, labels, path)
 
 
-def draw_slowdown(runs: Table, along: str, mode: str, path: Path) -> None:
+def draw_slowdown(runs: Table, along: str, mode: str, path: Path, full: str | None = None) -> None:
     """Draw Full over Solo makespan along a column, paired by seed, with intervals.
 
     Source: ``fig:ccr``.
@@ -63,7 +63,7 @@ def draw_slowdown(runs: Table, along: str, mode: str, path: Path) -> None:
         ScenarioError: A column is not varied, or matplotlib is not installed.
     """
     along, mode = column_of(runs, along), column_of(runs, mode)
-    full = full_mode(runs, mode)
+    full = full_mode(runs, mode, SOLO, full)
     others = [each for each in parameters(runs) if each not in (along, mode)]
 
     def ratios(records: Sequence[Mapping[str, Any]]) -> list[float | None]:
@@ -76,7 +76,7 @@ def draw_slowdown(runs: Table, along: str, mode: str, path: Path) -> None:
     _draw_lines(lines, others, labels, path)
 
 
-def draw_regret(runs: Table, policy: str, mode: str, path: Path) -> None:
+def draw_regret(runs: Table, policy: str, mode: str, path: Path, full: str | None = None) -> None:
     """Draw a bar per case: Full makespan of the Solo choice over the best; inversions in red.
 
     With several seeds a bar is their mean, with its interval, and red if any of them inverts.
@@ -86,7 +86,7 @@ def draw_regret(runs: Table, policy: str, mode: str, path: Path) -> None:
     Raises:
         ScenarioError: A column is not varied, or matplotlib is not installed.
     """
-    matrix = policies(runs, policy, mode)
+    matrix = policies(runs, policy, mode, SOLO, full)
     heads = matrix.columns[: matrix.heads - 1]
     cases = grouped(matrix.to_dicts(), heads)
     means = [mean_interval(_plus_one(each["regret"] for each in case)) for case in cases]

@@ -53,7 +53,9 @@ def means(runs: Table, by: Sequence[str], measure: str, confidence: float = 0.95
     return Table((*columns, *names), tuple(rows), title, heads=len(columns))
 
 
-def policies(runs: Table, policy: str, mode: str, solo: str = SOLO) -> Table:
+def policies(
+    runs: Table, policy: str, mode: str, solo: str = SOLO, full: str | None = None
+) -> Table:
     """Return for each other combination and seed what choosing a policy by Solo costs in Full.
 
     Ratios to the best policy in Full (``tab:winner_matrix``), the Solo and Full winners, rank
@@ -62,15 +64,16 @@ def policies(runs: Table, policy: str, mode: str, solo: str = SOLO) -> Table:
     Args:
         runs: All runs.
         policy: The column of the policies, such as ``scheduler``.
-        mode: The column that tells Solo from Full, with two values.
+        mode: The column that tells Solo from Full.
         solo: The value that means Solo.
+        full: The value that means Full; may be left out if there are two.
 
     Raises:
-        ScenarioError: A column is not varied, or ``mode`` has other values than these two.
+        ScenarioError: A column is not varied, or ``mode`` has no such values.
     """
     policy, mode = column_of(runs, policy), column_of(runs, mode)
     names = values_of(runs, policy)
-    full = full_mode(runs, mode, solo)
+    full = full_mode(runs, mode, solo, full)
     columns = [*(each for each in parameters(runs) if each not in (policy, mode)), "seed"]
     rows = []
     for group in grouped(runs.to_dicts(), columns):
@@ -214,18 +217,23 @@ def check_measure(measure: str) -> None:
         raise ScenarioError(f"no measure {measure!r}; {hint}there are {', '.join(NUMBERS)}")
 
 
-def full_mode(runs: Table, mode: str, solo: str = SOLO) -> str:
-    """Return what stands for Full in a column of two values, one of them Solo.
+def full_mode(runs: Table, mode: str, solo: str = SOLO, full: str | None = None) -> str:
+    """Return which value of a column means Full: ``full``, or the only one beside Solo.
 
     Raises:
-        ScenarioError: It has other values.
+        ScenarioError: There is no such value, or there are several.
     """
     modes = values_of(runs, mode)
-    if len(modes) != 2 or solo not in modes:  # noqa: PLR2004 - Solo and Full
+    others = [each for each in modes if each != solo]
+    if solo not in modes or not others:
         raise ScenarioError(
-            f"{mode!r} needs two values, one of them {solo!r}; it has {', '.join(modes)}"
+            f"{mode!r} needs {solo!r} for Solo and another value; it has {', '.join(modes)}"
         )
-    return next(each for each in modes if each != solo)
+    if full is None and len(others) > 1:
+        raise ScenarioError(f"{mode!r} has {', '.join(modes)}; say which means Full (--full)")
+    if full not in (None, *others):
+        raise ScenarioError(f"{mode!r} has no {full!r} beside {solo!r}; it has {', '.join(modes)}")
+    return full or others[0]
 
 
 def _largest(values: Sequence[float | None]) -> float | None:
