@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from ncsim_wifi.phy.received_power import sinr_dB
 from ncsim_wifi.propagation import propagation
 from ncsim_wifi.quantities import mW_from_dBm
 from ncsim_wifi.radio import Radio
-from ncsim_wifi.validation.scenes import single
+from ncsim_wifi.validation.scenes import parallel, single
 
 
 def levels_at(distance_m, **rf):
@@ -43,6 +44,25 @@ def test_levels_are_the_table_at_the_sinr(distance_m, interferer_dBm, margin_dB)
 
     expected_Mbps = min(max(met, default=0.0), float(signals.rate_Mbps[0]))
     assert is_close or levels.effective_rate_Mbps(0, int(units)) == expected_Mbps
+
+
+@given(st.floats(10.0, 100.0), st.floats(75.0, 150.0))
+def test_a_threshold_that_is_met_exactly_is_met(length_m, separation_m):
+    network = parallel(2, separation_m, length_m=length_m).network()
+    signals = propagation(make_context(network), Radio())
+    signal_dBm = float(signals.signal_dBm[0])
+    power_mW = mW_from_dBm(float(signals.power_dBm[network.sources[1], network.targets[0]]))
+    ratio_dB = sinr_dB(signal_dBm, -95.0, power_mW)
+    table = read_table("ax")
+    threshold_dB = table.snr_min_dB[table.index_for(signal_dBm + 95.0)]
+    margin_dB = threshold_dB - ratio_dB
+    if threshold_dB - margin_dB > ratio_dB:  # in floating point
+        margin_dB = math.nextafter(margin_dB, math.inf)
+
+    levels = levels_of(signals, Radio(capture_margin_dB=margin_dB))
+
+    (units,) = levels.units(np.array([0]), np.array([power_mW]))
+    assert levels.effective_rate_Mbps(0, int(units)) == float(signals.rate_Mbps[0])
 
 
 def test_any_audible_interferer_counts_one_quantum_at_least_and_not_too_many():

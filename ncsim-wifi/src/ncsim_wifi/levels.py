@@ -116,7 +116,7 @@ def _limits(
         tolerable_interference_mW(signal_dBm, radio.noise_floor_dBm, threshold_dB) * units_per_mW
         for threshold_dB in thresholds_dB
     ]
-    return np.floor(np.maximum(np.stack(columns, axis=1), 0.0)).astype(np.int64)
+    return np.rint(np.maximum(np.stack(columns, axis=1), 0.0)).astype(np.int64)
 
 
 def _levels_of_link(

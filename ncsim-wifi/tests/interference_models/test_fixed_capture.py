@@ -5,6 +5,7 @@ from ncsim_core.errors import ModelScopeError
 from ncsim_core.network import Network
 from ncsim_core.testing.builders import make_context
 from ncsim_wifi.interference_models.csma_bianchi import csma_bianchi
+from ncsim_wifi.interference_models.fixed_capture import capture_success
 from ncsim_wifi.mac.efficiency import data_airtime_fraction
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.radio import Radio
@@ -23,6 +24,11 @@ def test_a_hidden_frame_that_is_not_decoded_is_lost(separation_m):
 
     idle = 1.0 - data_airtime_fraction(68.8, AxTiming())
     assert factors.tolist() == [idle, idle]
+
+
+def test_a_frame_exactly_at_the_decode_threshold_is_decoded():
+    assert capture_success(0.6, 17.0, 17.0) == 1.0
+    assert capture_success(0.6, 16.999, 17.0) == 1.0 - 0.6
 
 
 def test_a_hidden_frame_that_is_decoded_costs_nothing():
