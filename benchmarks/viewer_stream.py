@@ -1,8 +1,8 @@
-"""How far a page lags behind a run that writes 20,000 records a second, its connection dropping.
+"""How far the server lags behind a run that writes 20,000 records a second, connections dropping.
 
-Usage: python benchmarks/live.py [seconds] [records per second], by default 10 and 20000. A process
-writes a trace as ``ncsim run`` does, a server process streams it, and this one follows it and
-hangs up once a second. Prints the lag of each second's last records and checks every byte.
+Usage: python benchmarks/viewer_stream.py [seconds] [records per second], by default 10 and 20000. A
+process writes a trace as ``ncsim run`` does, a server process streams it, and this one follows it
+and hangs up once a second. Prints the lag at each arrival and checks every byte.
 """
 
 import re
