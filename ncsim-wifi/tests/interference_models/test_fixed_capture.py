@@ -13,9 +13,9 @@ from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
 from ncsim_wifi.validation.scenes import parallel, single
 
 
-def model_of(network, **rf):
+def model_of(network, *, options=None, **rf):
     context = make_context(network, sections={"rf": rf})
-    return csma_bianchi(context, hidden_model="fixed_capture")
+    return csma_bianchi(context, hidden_model="fixed_capture", **(options or {}))
 
 
 @pytest.mark.parametrize("separation_m", [72.0, 80.0, 114.0])
@@ -33,6 +33,27 @@ def test_a_frame_exactly_at_the_decode_threshold_is_decoded():
 
 def test_a_hidden_frame_that_is_decoded_costs_nothing():
     assert model_of(parallel(2, 115.0).network()).factors([0, 1], [0, 1]).tolist() == [1.0, 1.0]
+
+
+def test_a_floor_holds_for_lost_frames_too():
+    network = parallel(2, 80.0).network()
+    model = model_of(network, options={"outage_floor_factor": 0.6})
+
+    assert model.factors([0, 1], [0, 1]).tolist() == [0.6, 0.6]
+    assert model.factors([0], [0]).tolist() == [1.0]
+
+
+def test_what_is_left_out_counts_for_nothing():
+    network = parallel(3, 50.0).network()  # of which the outer links are hidden from each other
+    contention, hidden = (
+        model_of(network, options={"components": name}).factors([0, 1, 2], [0, 1, 2])
+        for name in ("contention_only", "hidden_only")
+    )
+
+    default = csma_bianchi(make_context(network), components="contention_only")
+    assert contention.tolist() == default.factors([0, 1, 2], [0, 1, 2]).tolist()
+    idle = 1.0 - data_airtime_fraction(68.8, AxTiming())
+    assert hidden.tolist() == [idle, 1.0, idle]
 
 
 def test_a_wider_margin_decodes_nearer_interferers():
