@@ -23,7 +23,7 @@ const configure = screen("configure", "New run", "n");
 const runs = screen("runs", "Runs", "r");
 
 export function viewsOf(ctx: Context, service: Service | null): View[] {
-  const shown: View[] = ctx.run.header ? [...RUN_VIEWS] : [];
+  const shown: View[] = ctx.run.header || ctx.ui.path ? [...RUN_VIEWS] : [];
   if (ctx.extras.study) shown.push(sweep);
   if (!service) return shown.length ? shown : [parameters];
   return service.canRun ? [...shown, configure, runs] : [...shown, runs];

@@ -77,9 +77,9 @@ function Editor({ service, offer }: { service: Service; offer: Offer }) {
   return (
     <div class="configure">
       <section class="form" aria-label="Form" tabIndex={0}>
+        <Jumps schema={offer.schema} />
         {offer.catalogue.broken.map((each) => <p class="fault" key={each.distribution}>{each.distribution} could not be loaded: {each.detail}</p>)}
         <Presets service={service} generators={offer.catalogue.generators} schema={offer.schema} document={scenario.document} put={scenario.fromDocument} />
-        <Jumps schema={offer.schema} />
         {scenario.document === null && <p role="status">{scenario.check ? "The text is no mapping: mend the YAML first." : "loading …"}</p>}
         {scenario.document !== null && propertiesOf(offer.schema, offer.schema).filter(([name]) => !name.startsWith("$")).map(([name, each]) => (
           <Field key={name} name={name} schema={resolved(each, offer.schema)} root={offer.schema} value={scenario.document?.[name]} path={[name]} faults={faults} required change={change} />

@@ -1,8 +1,11 @@
 /** A list of like objects as a table: editable, and pasteable from a spreadsheet. */
 
-import { useMemo } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import type { Fault, Schema } from "../server/api";
 import { describe, emptyMeans, pointerOf, textOf, valueAt, valueOf, withValue, type Column } from "./schema";
+
+/** Rows of a table that are on the page at a time. */
+const PAGE = 100;
 
 export type Path = (string | number)[];
 
@@ -30,6 +33,9 @@ export function pasted(rows: unknown[], columns: Column[], row: number, column: 
 
 export function EditTable({ title, description, path, columns, rows, faults, change }: Props) {
   const own = pointerOf(path);
+  const [page, setPage] = useState(0);
+  const pages = Math.max(1, Math.ceil(rows.length / PAGE));
+  const first = Math.min(page, pages - 1) * PAGE;
   const atWhole = faults.filter((fault) => fault.pointer === own);
   const paste = (row: number, column: number, event: ClipboardEvent): void => {
     const text = event.clipboardData?.getData("text") ?? "";
@@ -42,15 +48,24 @@ export function EditTable({ title, description, path, columns, rows, faults, cha
       <summary>{title} ({rows.length})</summary>
       <p class="muted">{description} Paste cells from a spreadsheet into any cell.</p>
       {atWhole.map((fault) => <p class="fault" role="alert" key={fault.message}>{fault.message}</p>)}
-      <div class="scroll" tabIndex={0} role="region" aria-label={title}>
+      {pages > 1 && (
+        <p>
+          <button disabled={first === 0} onClick={() => setPage(first / PAGE - 1)}>Earlier rows</button> {first + 1} to {Math.min(rows.length, first + PAGE)} of {rows.length}{" "}
+          <button disabled={first + PAGE >= rows.length} onClick={() => setPage(first / PAGE + 1)}>Later rows</button>
+        </p>
+      )}
+      <div class="scroll" tabIndex={0} role="region" aria-label={title} data-pointer={own}>
         <table>
           <thead><tr>{columns.map((column) => (
             <th scope="col" key={column.path.join(".")} title={describe(column.schema)}>{column.path.join(".")}{column.required ? " *" : ""}</th>
           ))}<th scope="col"><span class="hidden">actions</span></th></tr></thead>
-          <tbody>{rows.map((row, i) => <Row key={i} {...{ row, i, path, columns, change, paste }} faults={faultsBelow(faults, `${own}/${i}`)} title={title} />)}</tbody>
+          <tbody>{rows.slice(first, first + PAGE).map((row, k) => {
+            const i = first + k;
+            return <Row key={i} {...{ row, i, path, columns, change, paste, title }} faults={faultsBelow(faults, `${own}/${i}`)} />;
+          })}</tbody>
         </table>
       </div>
-      <button onClick={() => change(path, [...rows, {}])}>Add a row to {title}</button>
+      <button onClick={() => { change(path, [...rows, {}]); setPage(Math.floor(rows.length / PAGE)); }}>Add a row to {title}</button>
     </details>
   );
 }

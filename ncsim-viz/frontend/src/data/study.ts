@@ -44,6 +44,7 @@ export function winnerParts(study: Study): Parts {
   const columns = study.winners?.columns ?? [];
   const known = new Set(study.factors.map((factor) => factor.name).concat("seed"));
   const end = columns.indexOf("solo_winners");
-  const labels = columns.slice(0, end).filter((name) => known.has(name));
-  return { labels, policies: columns.slice(labels.length, end) };
+  const all = columns.slice(0, end).filter((name) => known.has(name));
+  const labels = all.filter((name) => distinct(study.winners as StudyTable, name).length > 1);
+  return { labels: labels.length ? labels : all, policies: columns.slice(all.length, end) };
 }

@@ -63,14 +63,14 @@ function RunTable({ rows, service, ctx }: { rows: Entry[]; service: Service; ctx
   return (
     <table>
       <caption>Runs</caption>
-      <thead><tr>{["run", "scenario", "status", "makespan s", ...kinds, "changed (UTC)", "compare"].map((name) => <th scope="col" key={name}>{name.replaceAll("_", " ")}</th>)}</tr></thead>
+      <thead><tr>{["run", "compare", "scenario", "status", "makespan s", ...kinds, "changed (UTC)"].map((name) => <th scope="col" key={name}>{name.replaceAll("_", " ")}</th>)}</tr></thead>
       <tbody>{rows.map((each) => (
         <tr key={each.id} aria-current={each.id === path ? "true" : undefined}>
           <td>{each.bytes === null && !each.is_live ? each.id : <button class="link" onClick={() => service.openPath(each.id)}>{each.id}</button>}</td>
+          <td>{path && each.id !== path && !each.is_live && each.bytes !== null && <button onClick={() => service.openPath(path, each.id)}>with {path}</button>}</td>
           <td>{each.name}</td><td>{each.is_live ? "● live" : each.status.replaceAll("_", " ")}</td><td class="number">{number(each.makespan_s, 7)}</td>
           {kinds.map((kind) => <td key={kind}>{each.plugins?.[kind] ?? ""}</td>)}
           <td>{dateOf(each)}</td>
-          <td>{path && each.id !== path && !each.is_live && each.bytes !== null && <button onClick={() => service.openPath(path, each.id)}>with {path}</button>}</td>
         </tr>
       ))}</tbody>
     </table>
@@ -104,5 +104,5 @@ export function JobList({ service }: { service: Service }) {
 function Progress({ job }: { job: Job }) {
   if (!job.progress) return <>{job.ran_s === null ? "" : `${number(job.ran_s)} s`}</>;
   const { tasks, tasks_ended, simulated_s } = job.progress;
-  return <><progress max={tasks} value={tasks_ended} aria-label={`progress of ${job.name}`} /> {tasks_ended} of {tasks} tasks, {number(simulated_s)} s simulated</>;
+  return <><progress max={tasks} value={tasks_ended} aria-label={`progress of ${job.name}`} /> {tasks_ended} of {tasks} tasks, at {number(simulated_s)} s</>;
 }

@@ -8,7 +8,7 @@ import type { Box, Context } from "./view";
 
 export const WINNER_ROW = 24;
 export const REGRET_ROW = 24;
-export const REGRET_TOP = 92;
+export const REGRET_TOP = 114;
 const LABELS = 250;
 const VERDICT = 290;
 
@@ -76,6 +76,14 @@ export function byRegret(winners: StudyTable): number[] {
   return winners.rows.map((_, i) => i).sort((a, b) => regret(b) - regret(a) || a - b);
 }
 
+/** Pieces of text in two lines, the second cut where it is too long. */
+function lines(parts: string[], width: number): string[] {
+  let many = parts.length;
+  while (many > 1 && widthOf(parts.slice(0, many).join(" · "), 12) > width) many -= 1;
+  const rest = parts.slice(many).join(" · ");
+  return [parts.slice(0, many).join(" · "), ...(rest ? [fitted(rest, width, 12)] : [])];
+}
+
 export function paintRegret(p: Painter, ctx: Context, study: Study, box: Box): void {
   const { colours } = ctx;
   const winners = study.winners as StudyTable;
@@ -84,12 +92,12 @@ export function paintRegret(p: Painter, ctx: Context, study: Study, box: Box): v
   const most = Math.max(1e-9, ...order.slice(0, 1).map(regret));
   p.text(12, 16, fitted(`Regret: how much longer the winner under ${String(study.roles?.solo ?? "")} takes than the winner under ${String(study.roles?.full ?? "")}`, box.width - 24, 13), { fill: colours.ink, size: 13, bold: true });
   const totals = study.totals?.rows.map((row) => `${String(row[0]).replaceAll("_", " ")} ${typeof row[1] === "number" ? number(row[1], 3) : String(row[1])}`) ?? [];
-  p.text(12, 38, fitted(totals.join(" · "), box.width - 24, 12), { fill: colours.ink, size: 12 });
-  p.rect(12, 56, 24, 12, { fill: colours.categories[5] });
-  hatch(p, 12, 56, 24, 12, colours.paper, 6);
-  p.text(42, 62, "◆ hatched: rank inversion, another policy wins", { fill: colours.ink, size: 11 });
-  p.rect(342, 56, 24, 12, { fill: colours.categories[0] });
-  p.text(372, 62, "plain: the same policy wins", { fill: colours.ink, size: 11 });
+  lines(totals, box.width - 24).forEach((line, i) => p.text(12, 38 + i * 18, line, { fill: colours.ink, size: 12 }));
+  p.rect(12, 78, 24, 12, { fill: colours.categories[5] });
+  hatch(p, 12, 78, 24, 12, colours.paper, 6);
+  p.text(42, 84, "◆ hatched: rank inversion, another policy wins", { fill: colours.ink, size: 11 });
+  p.rect(342, 78, 24, 12, { fill: colours.categories[0] });
+  p.text(372, 84, "plain: the same policy wins", { fill: colours.ink, size: 11 });
   const left = LABELS + 20;
   const wide = box.width - left - 120;
   order.forEach((row, i) => {
