@@ -150,6 +150,32 @@ def unaware_starts(
     return np.asarray(missed * clear * (1.0 - (1.0 - tau) ** SLOTS_IN_GAP))
 
 
+def unaware_survival(
+    scene: Scene,
+    unread: Unread,
+    starts: FloatArray,
+    answered: FloatArray,
+    attempts: FloatArray,
+    rate_per_us: FloatArray,
+) -> FloatArray:
+    """Return what frames of each link survive of unaware starts, others' and their own.
+
+    Args:
+        scene: The active links.
+        unread: Who may begin unawares.
+        starts: How often w begins within an exchange of u, shape (u, w).
+        answered: Part of the RTS of each link that are answered.
+        attempts: a_l.
+        rate_per_us: R_u.
+    """
+    into = starts[scene.station] * unread.exposed * answered[:, None]  # (l, w)
+    survives = (1.0 - into * unread.kill).prod(axis=1)
+    per_us = (scene.link_of_station * attempts) @ into * rate_per_us[:, None]
+    part = (per_us / rate_per_us).T[scene.station]  # of attempts of l, into exchanges of u
+    own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
+    return np.asarray(survives * (1.0 - own_lost))
+
+
 def silenced_share(scene: Scene) -> FloatArray:
     """Return which links' CTS silence whom though their sender does not, (links, stations)."""
     own = scene.station

@@ -47,6 +47,11 @@ class Traffic(NamedTuple):
     attempts: FloatArray
     answered: FloatArray
 
+    @property
+    def sending(self) -> FloatArray:
+        """Return how likely w is sending, not only keeping u silent, while u may count."""
+        return self.on * (self.times.on_air_us / self.times.busy_us)
+
 
 class HiddenLoss(NamedTuple):
     """What each relation does, by stage of the interferer.
@@ -135,26 +140,10 @@ def hidden_loss(
     kill = np.where(hostile.is_strong, 1.0, -np.expm1(-hazard))
     on = np.clip(traffic.on[own, other], LEAST_ON, 1.0)
     later = conditioned_on(scene, statics, on, kill, earlier_only=False)
-    sum_on = np.minimum(LARGEST_ON, group_sums(statics, later))
-    rate = traffic.rate_per_us[other]
-    phi = rate / group_sums(statics, rate)
-    own_rate = 1.0 / traffic.cycle_us[other]
-    share = own_rate / (own_rate + (group_sums(statics, rate) - rate)[:, None])
-    gaps = _gaps(scene, statics, traffic, kill, GroupState(sum_on, phi, share))
-    result = survival(
-        gaps,
-        statics.window_us,
-        scene.protected_us[hostile.link],
-        hazard,
-        hostile.is_strong,
-    )
-    on_part = gaps.on_air_us[:, None] / gaps.cycle_us
-    survives, missed = (_gated(each, on_part, *gates) for each in result)
-    answered = _answered(scene, statics, gaps)
-    by_cts = statics.by_cts[:, None]
-    survives = np.where(by_cts, statics.by_cts_survives, survives)
-    answered = np.where(by_cts, statics.by_cts_survives, answered)
-    missed = np.where(by_cts, statics.by_cts_missed, missed)
+    state = _group_state(statics, traffic, later)
+    gaps = _gaps(scene, statics, traffic, kill, state)
+    survives, missed, answered = _fates(scene, statics, gaps, hazard, gates)
+    phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / time.sum(axis=1, keepdims=True)
     in_group = group_sums(statics, phi * (alone * survives).sum(axis=1))[:, None]
@@ -171,6 +160,38 @@ def hidden_loss(
         phi,
         alone,
         correction,
+    )
+
+
+def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "GroupState":
+    """Return how active the group of each relation is, from A' of its members."""
+    other = statics.hostile.station
+    rate = traffic.rate_per_us[other]
+    sum_rate = group_sums(statics, rate)
+    own_rate = 1.0 / traffic.cycle_us[other]
+    share = own_rate / (own_rate + (sum_rate - rate)[:, None])
+    return GroupState(np.minimum(LARGEST_ON, group_sums(statics, later)), rate / sum_rate, share)
+
+
+def _fates(
+    scene: Scene,
+    statics: Statics,
+    gaps: Gaps,
+    hazard: FloatArray,
+    gates: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return s_k and nohit_k of each relation, and what part of RTS are answered."""
+    hostile = statics.hostile
+    result = survival(
+        gaps, statics.window_us, scene.protected_us[hostile.link], hazard, hostile.is_strong
+    )
+    on_part = gaps.on_air_us[:, None] / gaps.cycle_us
+    survives, missed = (_gated(each, on_part, *gates) for each in result)
+    by_cts = statics.by_cts[:, None]
+    return (
+        np.where(by_cts, statics.by_cts_survives, survives),
+        np.where(by_cts, statics.by_cts_missed, missed),
+        np.where(by_cts, statics.by_cts_survives, _answered(scene, statics, gaps)),
     )
 
 

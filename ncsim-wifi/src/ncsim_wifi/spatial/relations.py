@@ -5,113 +5,17 @@ Source: MODEL 2.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.near import NOBODY, Near, grouped
 from ncsim_wifi.spatial.scene import Scene
 
-FAR_ACTIVITY = 0.62
-FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
 SURVIVAL_DISCOUNT = 0.6
 MAX_JOINT_HAZARD = 10.0
-NOBODY = -1
 RTS_RATIO_dB = 7.0  # a control frame survives a collision above this ratio (MODEL 2)
-
-
-class Others(NamedTuple):
-    """Harmful stations beyond the nearest ones, by link and group.
-
-    Args:
-        link: The link that suffers.
-        station: The station it suffers from.
-        group: Number of the group, whose members exclude each other on the air.
-        harm: Part of overlapped frames that are lost.
-    """
-
-    link: IntArray
-    station: IntArray
-    group: IntArray
-    harm: FloatArray
-
-
-@dataclass(frozen=True)
-class Near:
-    """The strongest hidden stations of each link, strongest first, and the noise of the rest.
-
-    Args:
-        station: Shape (links, near), ``NOBODY`` where there are fewer.
-        power_mW: Their power at the receiver, 0 where there is nobody.
-        noise_mW: Noise and far interferers, shape (links,).
-        far_mW: Power of the far interferers, which only raise the noise, shape (links, stations).
-        others: Stations beyond the nearest that are no mere noise.
-    """
-
-    station: IntArray
-    power_mW: FloatArray
-    noise_mW: FloatArray
-    far_mW: FloatArray
-    others: Others
-
-
-def far_activity(degree: FloatArray) -> FloatArray:
-    """Return how much of the time a far interferer is taken to be on.
-
-    Source: MODEL 2, near and far interferers.
-
-    Args:
-        degree: Number of stations it senses.
-    """
-    return FAR_ACTIVITY / (1.0 + FAR_ACTIVITY_PER_NEIGHBOUR * degree)
-
-
-def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
-    """Return the interferers looked at one by one, and what becomes of all others.
-
-    Others that harm nobody alone only raise the noise.
-
-    Args:
-        scene: The active links.
-        is_hidden: hid[w, l], shape (stations, links).
-    """
-    settings = scene.settings
-    count = settings.approximations.near_count
-    power_mW = np.where(is_hidden, scene.at_receiver_mW, 0.0).T
-    order = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
-    near_mW = np.take_along_axis(power_mW, order, axis=1)
-    far_mW = power_mW.copy()
-    np.put_along_axis(far_mW, order, 0.0, axis=1)
-    harm = _harm(scene, far_mW)
-    far_mW[harm > 0.0] = 0.0
-    noise_mW = np.full(len(scene.links), scene.plant.noise_mW)
-    if not settings.terms.far_noise:
-        far_mW[:] = 0.0
-    else:
-        noise_mW += far_mW @ far_activity(scene.senses.sum(axis=1).astype(np.float64))
-    if not settings.terms.hidden_loss:
-        harm[:] = 0.0
-    near_station = np.where(near_mW > 0.0, order, NOBODY)
-    return Near(near_station, near_mW, noise_mW, far_mW, _others(scene, harm))
-
-
-def _others(scene: Scene, harm: FloatArray) -> Others:
-    """Return the harm of stations beyond the nearest, by groups that exclude each other."""
-    everybody = np.broadcast_to(np.arange(scene.station_count), harm.shape)
-    link, station, group = _grouped(harm > 0.0, everybody, scene.senses)
-    return Others(link, station, group, harm[link, station])
-
-
-def _harm(scene: Scene, power_mW: FloatArray) -> FloatArray:
-    """Return the loss of frames that one interferer overlaps, 0 where too small to count."""
-    settings = scene.settings
-    rows = np.arange(len(scene.links))[:, None]
-    ratio_dB = scene.ratio_dB(power_mW + scene.plant.noise_mW, rows)
-    loss = -np.expm1(-hazard(scene.scheme[:, None], ratio_dB))
-    loss = np.where(ratio_dB < settings.preamble_ratio_dB, 1.0, loss)
-    counts = (power_mW > 0.0) & (loss >= settings.approximations.min_kill)
-    return np.where(counts, loss, 0.0)
 
 
 @dataclass(frozen=True)
@@ -186,14 +90,9 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     interference is attributed to its weakest member and never counted twice.
     """
     settings = scene.settings
-    rows = np.arange(len(scene.links))[:, None]
     somebody = near.station != NOBODY
-    ratio_dB = scene.ratio_dB(near.power_mW + near.noise_mW[:, None], rows)
     locks = near.power_mW >= 10.0 ** (settings.preamble_dBm / 10.0)
-    least_dB = RTS_RATIO_dB if settings.rts_cts else settings.preamble_ratio_dB
-    is_strong = somebody & (locks | (ratio_dB < least_dB))
-    by_cts_only = somebody & ~is_strong & _cts_reaches(scene)[near.station, rows]
-    is_strong |= by_cts_only
+    is_strong, by_cts_only = _strong(scene, near, locks)
     helper = _helpers(scene, near, is_strong)
     sets = _subsets(settings.approximations.helper_count)
     delta, omega = _increments(scene, near, helper, sets)
@@ -203,7 +102,7 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     kept &= scene.is_alive[:, None]
     if not settings.terms.hidden_loss:
         kept[:] = False
-    link, place, group = _grouped(kept, near.station, scene.senses)
+    link, place, group = grouped(kept, near.station, scene.senses)
     helper_station = np.where(
         helper == NOBODY, NOBODY, np.take_along_axis(near.station[:, None, :], helper, axis=2)
     )
@@ -221,6 +120,18 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
         partner[link, place],
         partner_kill[link, place],
     )
+
+
+def _strong(scene: Scene, near: Near, locks: BoolArray) -> tuple[BoolArray, BoolArray]:
+    """Return which near ones kill by being on at the start, and which by their CTS alone."""
+    settings = scene.settings
+    rows = np.arange(len(scene.links))[:, None]
+    somebody = near.station != NOBODY
+    ratio_dB = scene.ratio_dB(near.power_mW + near.noise_mW[:, None], rows)
+    least_dB = RTS_RATIO_dB if settings.rts_cts else settings.preamble_ratio_dB
+    is_strong = somebody & (locks | (ratio_dB < least_dB))
+    by_cts_only = somebody & ~is_strong & _cts_reaches(scene)[near.station, rows]
+    return is_strong | by_cts_only, by_cts_only
 
 
 def _cts_reaches(scene: Scene) -> BoolArray:
@@ -290,28 +201,3 @@ def _partners(scene: Scene, near: Near) -> tuple[IntArray, FloatArray]:
     added = np.exp(-alone / 2.0) - np.exp(-both / 2.0)
     station = np.broadcast_to(near.station[:, None, :], there.shape)
     return np.where(there, station, NOBODY), np.where(there, added, 0.0)
-
-
-def _grouped(
-    kept: BoolArray, station: IntArray, senses: BoolArray
-) -> tuple[IntArray, IntArray, IntArray]:
-    """Return link, place and group of the kept relations: each group excludes itself on air."""
-    links, places, groups = [], [], []
-    first_group = 0
-    for link in np.flatnonzero(kept.any(axis=1)).tolist():
-        cliques: list[list[int]] = []
-        for place in np.flatnonzero(kept[link]).tolist():
-            heard = senses[station[link, place]]
-            for clique in cliques:
-                if heard[station[link, clique]].all():
-                    clique.append(place)
-                    break
-            else:
-                cliques.append([place])
-        for number, clique in enumerate(cliques, first_group):
-            links += [link] * len(clique)
-            places += clique
-            groups += [number] * len(clique)
-        first_group += len(cliques)
-    as_int = [np.array(values, np.int64) for values in (links, places, groups)]
-    return as_int[0], as_int[1], as_int[2]

@@ -23,8 +23,7 @@ from ncsim_wifi.spatial.backoff import (
 )
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.energy import gate, subset_weights
-from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts
-from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
 from ncsim_wifi.spatial.joint import JointStages
 from ncsim_wifi.spatial.losses import (
     LARGEST_ON,
@@ -33,6 +32,7 @@ from ncsim_wifi.spatial.losses import (
     Traffic,
     hidden_loss,
 )
+from ncsim_wifi.spatial.near import far_noise_hazard, others_survival
 from ncsim_wifi.spatial.occupancy import Occupancy
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.scene import Scene, scene_of
@@ -171,10 +171,10 @@ class FixedPoint:
     def _learn(self, traffic: Traffic, attempts: Attempts, *, with_chains: bool) -> None:
         """Bring losses, chains and stages up to date (MODEL 3.5 to 3.11)."""
         statics = self._statics
-        base = base_success(
-            self._scene, self._noise_hazard(traffic), attempts.same_slot, statics.same_slot_loss
-        )
-        base = base * self._others_survival(traffic)
+        scene, sending = self._scene, traffic.sending
+        noise_hazard = far_noise_hazard(scene, statics.far_mW, sending)
+        base = base_success(scene, noise_hazard, attempts.same_slot, statics.same_slot_loss)
+        base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
         base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
@@ -197,32 +197,6 @@ class FixedPoint:
             success = np.repeat(base[:, None], STAGES, axis=1)
         self._visit(success)
 
-    def _noise_hazard(self, traffic: Traffic) -> FloatArray:
-        """Return the hazard of the far interferers' noise beyond that of the noise floor.
-
-        What the noise floor alone costs is in the clean rate, which the link model decides.
-        """
-        scene, plant = self._scene, self._scene.plant
-        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
-        far_mW = (self._statics.far_mW * sending[scene.station]).sum(axis=1)
-        every = np.arange(len(scene.links))
-        whole = hazard(scene.scheme, scene.ratio_dB(plant.noise_mW + far_mW, every))
-        return np.maximum(0.0, whole - plant.noise_hazard[scene.links])
-
-    def _others_survival(self, traffic: Traffic) -> FloatArray:
-        """Return what interferers beyond the nearest leave; groups may begin at any time."""
-        scene, others = self._scene, self._statics.others
-        if not len(others.link):
-            return np.ones(len(scene.links))
-        on_air_us = traffic.times.on_air_us[others.station]
-        on = traffic.on[scene.station[others.link], others.station] * on_air_us
-        on = others.harm * on / traffic.times.busy_us[others.station]
-        free = 1.0 - np.minimum(np.bincount(others.group, on), LARGEST_ON)
-        begun = np.bincount(others.group, on * scene.protected_us[others.link] / on_air_us) / free
-        first = np.flatnonzero(np.diff(others.group, prepend=-1))
-        logs = np.log(free) - begun
-        return np.exp(np.bincount(others.link[first], logs, minlength=len(scene.links)))
-
     def _fields_survival(self, traffic: Traffic, attempts: Attempts) -> FloatArray:
         """Return what stations that lost a signalling field leave of frames (an artefact)."""
         fields = self._statics.fields
@@ -239,14 +213,10 @@ class FixedPoint:
         scene, unread = self._scene, self._statics.unread
         if unread is None:
             return np.ones(len(scene.links))
-        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
-        starts = unaware_starts(unread, sending, self._clear, traffic.tau)
-        into = starts[scene.station] * unread.exposed * self._answered[:, None]  # (l, w)
-        lost = 1.0 - (1.0 - into * unread.kill).prod(axis=1)
-        per_us = (scene.link_of_station * self._attempts) @ into * traffic.rate_per_us[:, None]
-        part = (per_us / traffic.rate_per_us).T[scene.station]  # of attempts of l, into u
-        own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
-        return np.asarray((1.0 - lost) * (1.0 - own_lost))
+        starts = unaware_starts(unread, traffic.sending, self._clear, traffic.tau)
+        return unaware_survival(
+            scene, unread, starts, self._answered, self._attempts, traffic.rate_per_us
+        )
 
     def _learn_handshake(self, traffic: Traffic, hidden: HiddenLoss) -> None:
         """Update which RTS are answered, and who is silenced by CTS of hidden receivers."""
@@ -326,9 +296,10 @@ class FixedPoint:
                 hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill
             )
             spared[hostile.link, hostile.station] = 1.0 - kill
-        sending = traffic.on * (traffic.times.on_air_us / traffic.times.busy_us)
         own = scene.link_of_station * (self._attempts * self._answered)
-        sending = sending * (1.0 - own @ self._statics.silenced).T  # a CTS stops the sender too
+        sending = (
+            traffic.sending * (1.0 - own @ self._statics.silenced).T
+        )  # a CTS stops the sender too
         heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
         self._heard = heard
         if not len(acks.link):

@@ -19,13 +19,12 @@ from ncsim_wifi.spatial.handshake import (
     unmet,
     unread_of,
 )
+from ncsim_wifi.spatial.near import Others, near_interferers
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
 from ncsim_wifi.spatial.relations import (
     Hostile,
-    Others,
     RTS_RATIO_dB,
     hostile_relations,
-    near_interferers,
 )
 from ncsim_wifi.spatial.scene import Scene
 

@@ -1,0 +1,178 @@
+"""Which hidden stations are looked at one by one, and what becomes of all others.
+
+Others that harm alone count by groups that begin at any time; the rest is noise, as loud as they
+are active.
+
+Source: MODEL 2.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
+from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.scene import Scene
+
+FAR_ACTIVITY = 0.62
+FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
+NOBODY = -1
+LARGEST_ON = 0.97
+
+
+class Others(NamedTuple):
+    """Harmful stations beyond the nearest ones, by link and group.
+
+    Args:
+        link: The link that suffers.
+        station: The station it suffers from.
+        group: Number of the group, whose members exclude each other on the air.
+        harm: Part of overlapped frames that are lost.
+    """
+
+    link: IntArray
+    station: IntArray
+    group: IntArray
+    harm: FloatArray
+
+
+@dataclass(frozen=True)
+class Near:
+    """The strongest hidden stations of each link, strongest first, and the noise of the rest.
+
+    Args:
+        station: Shape (links, near), ``NOBODY`` where there are fewer.
+        power_mW: Their power at the receiver, 0 where there is nobody.
+        noise_mW: Noise and far interferers, shape (links,).
+        far_mW: Power of the far interferers, which only raise the noise, shape (links, stations).
+        others: Stations beyond the nearest that are no mere noise.
+    """
+
+    station: IntArray
+    power_mW: FloatArray
+    noise_mW: FloatArray
+    far_mW: FloatArray
+    others: Others
+
+
+def far_activity(degree: FloatArray) -> FloatArray:
+    """Return how much of the time a far interferer is taken to be on.
+
+    Source: MODEL 2, near and far interferers.
+
+    Args:
+        degree: Number of stations it senses.
+    """
+    return FAR_ACTIVITY / (1.0 + FAR_ACTIVITY_PER_NEIGHBOUR * degree)
+
+
+def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
+    """Return the interferers looked at one by one, and what becomes of all others.
+
+    Others that harm nobody alone only raise the noise.
+
+    Args:
+        scene: The active links.
+        is_hidden: hid[w, l], shape (stations, links).
+    """
+    settings = scene.settings
+    count = settings.approximations.near_count
+    power_mW = np.where(is_hidden, scene.at_receiver_mW, 0.0).T
+    order = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
+    near_mW = np.take_along_axis(power_mW, order, axis=1)
+    far_mW = power_mW.copy()
+    np.put_along_axis(far_mW, order, 0.0, axis=1)
+    harm = _harm(scene, far_mW)
+    far_mW[harm > 0.0] = 0.0
+    noise_mW = np.full(len(scene.links), scene.plant.noise_mW)
+    if not settings.terms.far_noise:
+        far_mW[:] = 0.0
+    else:
+        noise_mW += far_mW @ far_activity(scene.senses.sum(axis=1).astype(np.float64))
+    if not settings.terms.hidden_loss:
+        harm[:] = 0.0
+    near_station = np.where(near_mW > 0.0, order, NOBODY)
+    return Near(near_station, near_mW, noise_mW, far_mW, _others(scene, harm))
+
+
+def _others(scene: Scene, harm: FloatArray) -> Others:
+    """Return the harm of stations beyond the nearest, by groups that exclude each other."""
+    everybody = np.broadcast_to(np.arange(scene.station_count), harm.shape)
+    link, station, group = grouped(harm > 0.0, everybody, scene.senses)
+    return Others(link, station, group, harm[link, station])
+
+
+def _harm(scene: Scene, power_mW: FloatArray) -> FloatArray:
+    """Return the loss of frames that one interferer overlaps, 0 where too small to count."""
+    settings = scene.settings
+    rows = np.arange(len(scene.links))[:, None]
+    ratio_dB = scene.ratio_dB(power_mW + scene.plant.noise_mW, rows)
+    loss = -np.expm1(-hazard(scene.scheme[:, None], ratio_dB))
+    loss = np.where(ratio_dB < settings.preamble_ratio_dB, 1.0, loss)
+    counts = (power_mW > 0.0) & (loss >= settings.approximations.min_kill)
+    return np.where(counts, loss, 0.0)
+
+
+def far_noise_hazard(scene: Scene, far_mW: FloatArray, sending: FloatArray) -> FloatArray:
+    """Return the hazard of the far interferers' noise beyond that of the noise floor.
+
+    What the noise floor alone costs is in the clean rate, which the link model decides.
+
+    Args:
+        scene: The active links.
+        far_mW: Power of each station at each receiver, shape (links, stations).
+        sending: How likely w is sending while u may count, shape (stations u, stations w).
+    """
+    plant = scene.plant
+    noise_mW = plant.noise_mW + (far_mW * sending[scene.station]).sum(axis=1)
+    every = np.arange(len(scene.links))
+    whole = hazard(scene.scheme, scene.ratio_dB(noise_mW, every))
+    return np.maximum(0.0, whole - plant.noise_hazard[scene.links])
+
+
+def others_survival(
+    scene: Scene, others: Others, sending: FloatArray, on_air_us: FloatArray
+) -> FloatArray:
+    """Return what harmful interferers beyond the nearest leave of the frames of each link.
+
+    Args:
+        scene: The active links.
+        others: Who they are.
+        sending: How likely w is sending while u may count, shape (stations u, stations w).
+        on_air_us: T of each station.
+    """
+    if not len(others.link):
+        return np.ones(len(scene.links))
+    on = others.harm * sending[scene.station[others.link], others.station]
+    free = 1.0 - np.minimum(np.bincount(others.group, on), LARGEST_ON)
+    part = scene.protected_us[others.link] / on_air_us[others.station]
+    begun = np.bincount(others.group, on * part) / free
+    first = np.flatnonzero(np.diff(others.group, prepend=-1))
+    logs = np.log(free) - begun
+    return np.exp(np.bincount(others.link[first], logs, minlength=len(scene.links)))
+
+
+def grouped(
+    kept: BoolArray, station: IntArray, senses: BoolArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return link, place and group of the kept relations: each group excludes itself on air."""
+    links, places, groups = [], [], []
+    first_group = 0
+    for link in np.flatnonzero(kept.any(axis=1)).tolist():
+        cliques: list[list[int]] = []
+        for place in np.flatnonzero(kept[link]).tolist():
+            heard = senses[station[link, place]]
+            for clique in cliques:
+                if heard[station[link, clique]].all():
+                    clique.append(place)
+                    break
+            else:
+                cliques.append([place])
+        for number, clique in enumerate(cliques, first_group):
+            links += [link] * len(clique)
+            places += clique
+            groups += [number] * len(clique)
+        first_group += len(cliques)
+    as_int = [np.array(values, np.int64) for values in (links, places, groups)]
+    return as_int[0], as_int[1], as_int[2]
