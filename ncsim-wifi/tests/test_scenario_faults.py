@@ -90,3 +90,22 @@ def test_a_wired_link_without_bandwidth_is_told_and_asks_for_no_position():
 
     assert message.startswith("s.yaml:7:9  network.links[0]: a wired link needs a bandwidth, MB/s")
     assert "position" not in message
+
+
+def notes(link_model, interference, scheduler="manual"):
+    text = TEXT.format(
+        a=PLACED,
+        link=", bandwidth: 2",
+        interference=interference,
+        link_model=link_model,
+        rf="tx_power_dBm: 10",
+    ).replace("scheduler: manual", f"scheduler: {scheduler}")
+    return parse_scenario(text, name="s.yaml").notes
+
+
+def test_radio_parameters_that_nobody_reads_are_noted():
+    assert notes("static", "none") == (
+        "config.rf has no effect with link_model static, interference none",
+    )
+    assert notes("wifi", "none") == notes("static", "csma_bianchi") == ()
+    assert notes("static", "none", "conflict_aware_heft") == ()

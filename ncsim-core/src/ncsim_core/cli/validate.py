@@ -1,7 +1,7 @@
 """``ncsim validate``: is this scenario right?"""
 
 import json
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,15 +24,17 @@ def validate(
     from ncsim_core.errors import NcsimError
 
     overrides = overrides_of(settings)
-    answers = []
+    answers: list[dict[str, Any]] = []
     for path in scenarios:
         try:
-            answers.append({"file": path, "valid": True, "summary": _summary(path, overrides)})
+            answers.append(_answer(path, overrides))
         except NcsimError as error:
             answers.append({"file": path, "valid": False, "faults": _faults(error)})
             if not as_json:
                 typer.echo(str(error), err=True)
         if not as_json and answers[-1]["valid"]:
+            for note in answers[-1]["notes"]:
+                typer.echo(f"{path}: note: {note}", err=True)
             typer.echo(f"{path}: ok, {answers[-1]['summary']}")
     if as_json:
         typer.echo(json.dumps(answers, indent=2))
@@ -40,17 +42,18 @@ def validate(
         raise typer.Exit(ExitCode.INVALID_INPUT)
 
 
-def _summary(path: ScenarioPath, overrides: dict[str, object]) -> str:
+def _answer(path: ScenarioPath, overrides: dict[str, object]) -> dict[str, Any]:
     from ncsim_core.scenario.assembly import assemble
     from ncsim_core.scenario.loader import load_scenario
 
     scenario = load_scenario(path, overrides)
     assemble(scenario)
     tasks = sum(len(injection.dag.tasks) for injection in scenario.injections)
-    return (
+    summary = (
         f"{len(scenario.network.nodes)} nodes, {len(scenario.network.links)} links, "
         f"{len(scenario.injections)} DAGs, {tasks} tasks; {component_line(scenario.config)}"
     )
+    return {"file": path, "valid": True, "summary": summary, "notes": list(scenario.notes)}
 
 
 def _faults(error: Exception) -> object:

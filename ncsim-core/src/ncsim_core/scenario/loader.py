@@ -17,7 +17,7 @@ from ncsim_core.scenario.model import Config, Scenario
 from ncsim_core.scenario.overrides import override_path, with_overrides
 from ncsim_core.scenario.positions import Slip
 from ncsim_core.scenario.published_form import translated, translated_config
-from ncsim_core.scenario.resolution import Undecided, resolve_config
+from ncsim_core.scenario.resolution import Undecided, resolve_config, unused_sections
 from ncsim_core.scenario.semantics import (
     config_problems,
     dag_problems,
@@ -103,7 +103,9 @@ def _loaded(document: Data, slips: list[Slip], source: Source, loading: _Loading
     config = _config(document, problems, loading.registry)
     if problems or slips or config is None:
         raise located(problems, slips, source, origins)
-    return _built(document["scenario"], config, loading.name, translation.notes)
+    rows = document["scenario"]
+    unused = unused_sections(rows.get("config", {}), config, loading.registry)
+    return _built(rows, config, loading.name, (*translation.notes, *unused))
 
 
 def _shape_problems(document: Data, registry: Registry) -> list[Problem]:

@@ -1,6 +1,6 @@
 """Which components answer, once every default is decided."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from ncsim_core.plugins import KINDS
@@ -127,6 +127,21 @@ def _sections(
         for each in registry.sections()
         if each.section.name in rows or each.distribution in owners
     }
+
+
+def unused_sections(rows: Mapping[str, Any], config: Config, registry: Registry) -> Iterator[str]:
+    """Yield a note for each section that is given and that none of the chosen components reads."""
+    chosen = [registry.find(kind, spec.name) for kind, spec in config.components.items()]
+    owners = {each.distribution for each in chosen}
+    radios = [each for each in chosen if each.component.capabilities & {RADIO, NEEDS_RADIO}]
+    for each in registry.sections():
+        is_read = each.distribution in owners or (RADIO in each.section.implies and radios)
+        if each.section.name in rows and not is_read:
+            names = ", ".join(
+                f"{KINDS[kind].config_key} {config.components[kind].name}"
+                for kind in ("link_model", "interference_model")
+            )
+            yield f"config.{each.section.name} has no effect with {names}"
 
 
 def _typed(values: Mapping[str, Any], schema: Mapping[str, Any]) -> dict[str, object]:
