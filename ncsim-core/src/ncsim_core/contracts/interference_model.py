@@ -185,7 +185,11 @@ class PlainSession(InterferenceSession):
     def _links_to_ask(self, switched: Sequence[LinkIndex]) -> list[LinkIndex]:
         if self._is_global:
             return sorted(self._factor_by_link)
-        return sorted(self._factor_by_link.keys() & set(self._model.reach(switched)))
+        reached = set(self._model.reach(switched))
+        if not reached.issuperset(switched):
+            left_out = sorted(set(switched) - reached)
+            raise ValueError(f"reach() leaves out the changed links {left_out}")
+        return sorted(self._factor_by_link.keys() & reached)
 
 
 class Unaffected(InterferenceSession):

@@ -60,7 +60,7 @@ class RouteTable:
     def _row(self, source: NodeIndex) -> Sequence[Route | None]:
         """Return the model's answers for one source; they are checked when they are asked for."""
         try:
-            answers = self._model.routes_from(source, self._network)
+            answers = list(self._model.routes_from(source, self._network))
         except NcsimError:
             raise
         except Exception as error:
@@ -77,8 +77,11 @@ class RouteTable:
     ) -> Route | None:
         if answer is None:
             return None
-        route = tuple(answer)
-        fault = route_fault(route, source, target, self._network)
+        try:
+            route = tuple(answer)
+            fault = route_fault(route, source, target, self._network)
+        except (TypeError, ValueError):
+            fault = f"{answer!r} is no tuple of link indices"
         if fault:
             nodes = self._network.nodes
             ends = f"{nodes[source].id!r} to {nodes[target].id!r}"

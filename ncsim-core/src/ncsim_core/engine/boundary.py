@@ -102,18 +102,25 @@ class CheckedSession(InterferenceSession):
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
         try:
             links, factors = self._session.update(on, off)
+            for link, factor in zip(links, factors, strict=True):
+                if not (math.isfinite(factor) and 0.0 <= factor <= 1.0):
+                    raise PluginError(f"{self._who} gave link {link} the factor {factor!r}")
         except NcsimError:
             raise
         except Exception as error:
             raise PluginError(f"{self._who} raised {type(error).__name__}: {error}") from error
-        for link, factor in zip(links, factors, strict=True):
-            if not (math.isfinite(factor) and 0.0 <= factor <= 1.0):
-                raise PluginError(f"{self._who} gave link {link} the factor {factor!r}")
         return links, factors
 
     @override
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
-        return asked(self._who, lambda: self._session.competition(links))
+        answers = asked(self._who, lambda: list(self._session.competition(links)))
+        if len(answers) != len(links):
+            told = f"{len(answers)} answers for {len(links)} links"
+            raise PluginError(f"{self._who}: competition() gave {told}")
+        for answer in answers:
+            if not isinstance(answer, Competition):
+                raise PluginError(f"{self._who}: competition() gave {answer!r}")
+        return answers
 
 
 def checked_route_rates(
