@@ -1,4 +1,4 @@
-"""Each method of each contract raises or answers with rubbish: the run ends and says whose fault."""
+"""Each method of each contract raises or answers with rubbish: the run ends, with a name."""
 
 from dataclasses import replace
 

@@ -1,6 +1,7 @@
 import pytest
 from ncsim_core.builtin.dag_sources import SingleDAGSource
 from ncsim_core.builtin.interference_models import NoInterference
+from ncsim_core.builtin.link_models import StaticLinkModel
 from ncsim_core.builtin.queue_models import FifoQueue
 from ncsim_core.builtin.routing_models import DirectRouting
 from ncsim_core.builtin.schedulers import RoundRobinScheduler
@@ -9,6 +10,15 @@ from ncsim_core.network import LinkRates
 from ncsim_core.registry import Registry
 from ncsim_core.scenario import assemble, parse_scenario
 from ncsim_core.scenario.assembly import link_rates_fault
+
+PLAIN = """
+scenario:
+  network:
+    nodes: [{id: a, compute_capacity: 1}, {id: b, compute_capacity: 1}]
+    links: [{id: ab, from: a, to: b, bandwidth: 1}]
+  dags: [{id: d, tasks: [{id: x, compute_cost: 1}]}]
+  config: {scheduler: round_robin}
+"""
 
 
 def scenario(registry, config="{}"):
@@ -79,3 +89,16 @@ def test_rates_that_are_no_numbers_of_zero_or_more_are_refused(rates):
 
 def test_good_rates_have_no_fault():
     assert link_rates_fault(LinkRates((0.0, 2.0), (0.0, 0.1)), 2) is None
+
+
+@pytest.mark.parametrize("answer", [None, 42, [1.0], LinkRates(None, None), ZeroDivisionError])
+def test_what_a_link_model_does_wrong_is_blamed_on_it(answer, monkeypatch):
+    def rate_links(self, network):
+        if isinstance(answer, type):
+            raise answer("oops")
+        return answer
+
+    monkeypatch.setattr(StaticLinkModel, "rate_links", rate_links)
+
+    with pytest.raises(PluginError, match="link_model 'static' \\(ncsim-core "):
+        assemble(parse_scenario(PLAIN))

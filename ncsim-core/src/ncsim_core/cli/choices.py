@@ -42,6 +42,15 @@ MaxTime: TypeAlias = Annotated[
     typer.Option("--max-time", min=0, help="Give up when simulated time passes this (s)."),
 ]
 
+MaxWall: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--max-wall", min=0, help="Give up after this many seconds on the clock."),
+]
+MaxMemory: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--max-memory", min=0, help="Give up when the run takes more MB than this."),
+]
+
 
 def overrides_of(settings: Sequence[str] | None, **named: object) -> dict[str, object]:
     """Return overrides by dotted path: those of ``--set``, then the named options given.

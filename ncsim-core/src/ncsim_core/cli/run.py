@@ -10,7 +10,9 @@ import typer
 from ncsim_core.cli.choices import (
     InterferenceName,
     MaxEvents,
+    MaxMemory,
     MaxTime,
+    MaxWall,
     RoutingName,
     ScenarioPath,
     SchedulerName,
@@ -42,6 +44,8 @@ def run(  # noqa: PLR0913 - one parameter per option
     settings: Settings = None,
     max_events: MaxEvents = None,
     max_time: MaxTime = None,
+    max_wall: MaxWall = None,
+    max_memory: MaxMemory = None,
     trace: Annotated[
         str, typer.Option(help="What the trace holds: full, coarse (no rates) or off.")
     ] = "full",
@@ -53,6 +57,7 @@ def run(  # noqa: PLR0913 - one parameter per option
 
     Example: ncsim run examples/two_hop.yaml --interference none -o out/
     """
+    from ncsim_core.cli.guard import Guard
     from ncsim_core.cli.running import RunRequest, execute
     from ncsim_core.scenario.loader import load_scenario
 
@@ -63,9 +68,9 @@ def run(  # noqa: PLR0913 - one parameter per option
     if not quiet:
         for note in loaded.notes:
             print(f"{scenario}: note: {note}", file=sys.stderr)  # noqa: T201
-    request = RunRequest(
-        loaded, limits_of(max_events, max_time), output, force, trace, compress, quiet
-    )
+    guard = Guard(max_wall, max_memory)
+    limits = limits_of(max_events, max_time)
+    request = RunRequest(loaded, limits, output, force, trace, compress, quiet, guard)
     result = execute(request)
     typer.echo(json.dumps(result.to_dict(), indent=2) if as_json else report(loaded, result))
     if output is not None and not as_json:

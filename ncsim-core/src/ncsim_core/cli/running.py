@@ -10,6 +10,7 @@ from typing import cast
 
 from ncsim_core import __version__
 from ncsim_core.api import RunResult, result_of
+from ncsim_core.cli.guard import Guard
 from ncsim_core.cli.progress import ProgressLine, RunProgress
 from ncsim_core.engine.accompanying import accompanied
 from ncsim_core.engine.observer import Observer
@@ -42,6 +43,7 @@ class RunRequest:
         trace_level: ``full``, ``coarse`` or ``off``.
         compress: Whether the trace is gzipped.
         quiet: Whether progress stays off.
+        guard: Limits on the clock and on memory.
     """
 
     scenario: Scenario
@@ -51,6 +53,7 @@ class RunRequest:
     trace_level: str
     compress: bool
     quiet: bool
+    guard: Guard
 
 
 def execute(request: RunRequest) -> RunResult:
@@ -76,10 +79,11 @@ def execute(request: RunRequest) -> RunResult:
 
 def _simulated(request: RunRequest, observers: list[Observer]) -> RunResult:
     scenario = request.scenario
-    assembly = assemble(scenario)
-    simulation = Simulation(assembly.network, assembly.models, request.limits, observers)
-    with accompanied(simulation, scenario.name, scenario.config.seed):
-        simulation.run()
+    with request.guard.watching() as deadline_s:
+        assembly = assemble(scenario)
+        simulation = Simulation(assembly.network, assembly.models, request.limits, observers)
+        with accompanied(simulation, scenario.name, scenario.config.seed):
+            request.guard.run(simulation, deadline_s)
     return result_of(simulation)
 
 

@@ -102,13 +102,18 @@ class CheckedSession(InterferenceSession):
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
         try:
             links, factors = self._session.update(on, off)
-            for link, factor in zip(links, factors, strict=True):
-                if not (math.isfinite(factor) and 0.0 <= factor <= 1.0):
-                    raise PluginError(f"{self._who} gave link {link} the factor {factor!r}")
+            wrong = [
+                (link, factor)
+                for link, factor in zip(links, factors, strict=True)
+                if not (math.isfinite(factor) and 0.0 <= factor <= 1.0)
+            ]
         except NcsimError:
             raise
         except Exception as error:
             raise PluginError(f"{self._who} raised {type(error).__name__}: {error}") from error
+        if wrong:
+            link, factor = wrong[0]
+            raise PluginError(f"{self._who} gave link {link} the factor {factor!r}")
         return links, factors
 
     @override

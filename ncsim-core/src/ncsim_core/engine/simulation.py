@@ -151,6 +151,16 @@ class Simulation:
             return None
         return due
 
+    def give_up(self, detail: str) -> None:
+        """End the run with status ``limit_reached`` for a reason of the caller's.
+
+        Raises:
+            ValueError: It has ended already.
+        """
+        if self.outcome is not None:
+            raise ValueError("this run has ended")
+        self._end(RunStatus.LIMIT_REACHED, detail)
+
     def _end_without_event(self, due: Due | None) -> None:
         state, limits = self.state, self.setup.limits
         if due is None:
