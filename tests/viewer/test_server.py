@@ -140,10 +140,15 @@ def child_of(server, folder):
     return int(partial[0].name.split("-")[1])
 
 
-def is_running(process):
-    """Return whether a process is there and no zombie."""
+def ends(process):
+    """Return whether a process ends soon; a signal takes a moment."""
     status = Path(f"/proc/{process}/status")
-    return status.exists() and "\nState:\tZ" not in status.read_text()
+    deadline_s = time.monotonic() + 10
+    while status.exists() and "\nState:\tZ" not in status.read_text():
+        if time.monotonic() > deadline_s:
+            return False
+        time.sleep(0.02)
+    return True
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends children with their parent")
@@ -152,11 +157,8 @@ def test_a_server_that_is_killed_leaves_no_run_behind(tmp_path):
         child = child_of(server, tmp_path)
         server[0].kill()
         server[0].wait()
-        deadline_s = time.monotonic() + 10
-        while is_running(child) and time.monotonic() < deadline_s:
-            time.sleep(0.02)
 
-        assert not is_running(child)
+        assert ends(child)
 
 
 def test_ctrl_c_ends_the_server_cleanly_with_all_that_it_started(tmp_path):
@@ -170,8 +172,7 @@ def test_ctrl_c_ends_the_server_cleanly_with_all_that_it_started(tmp_path):
             _, complaint = process.communicate(timeout=20)
 
         assert (process.returncode, complaint) == (0, "")
-        with pytest.raises(ProcessLookupError):
-            os.kill(child, 0)
+        assert ends(child)
         assert list(tmp_path.iterdir()) == []
 
 

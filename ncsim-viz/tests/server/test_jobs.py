@@ -17,10 +17,54 @@ scenario:
 """
 
 
-def long_scenario(tasks=20_000):
-    """Return a scenario that takes some seconds."""
+def long_scenario(tasks=2000):
+    """Return a scenario of many tasks."""
     rows = ", ".join(f"{{id: t{number}, compute_cost: 1}}" for number in range(tasks))
     return LONG.format(tasks=rows)
+
+
+GREEDY = """
+import sys
+import time
+
+def memory():
+    bytearray(10**9)
+
+def output():
+    with open(sys.argv[4] + ".big", "wb") as file:
+        file.write(bytes(2_000_000))
+
+def wall():
+    time.sleep(60)
+
+def slowly():
+    from ncsim_core.cli.main import main
+    from ncsim_core.trace.writer import TraceWriter
+
+    task_ended = TraceWriter.task_ended
+
+    def slow(*given):
+        task_ended(*given)
+        time.sleep(0.01)
+
+    TraceWriter.task_ended = slow
+    main()
+
+def quiet():
+    raise SystemExit(1)
+"""
+
+
+@pytest.fixture
+def greedy(tmp_path, monkeypatch):
+    """Return a function that puts something else in the place of a run."""
+
+    def install(name):
+        (tmp_path / "greedy.py").write_text(GREEDY)
+        monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+        monkeypatch.setattr("ncsim_viz.server.jobs.ENTRY", f"greedy:{name}")
+
+    return install
 
 
 def until(client, job, states, within_s=60):
@@ -71,7 +115,8 @@ def test_a_wrong_scenario_is_not_queued(client, scenario_text):
     assert client.get("/api/jobs")[1]["jobs"] == []
 
 
-def test_runs_wait_for_each_other_show_progress_and_can_be_cancelled(client, run_folder):
+def test_runs_wait_for_each_other_show_progress_and_can_be_cancelled(client, run_folder, greedy):
+    greedy("slowly")
     first = start(client, long_scenario(), "../first one")
     second = start(client, long_scenario())
     running = until(client, first["id"], {"running"})
@@ -82,7 +127,7 @@ def test_runs_wait_for_each_other_show_progress_and_can_be_cancelled(client, run
 
     assert first["run"] == "first-one"
     assert (live["is_live"], live["status"]) == (True, "running")
-    assert 0 < running["progress"]["tasks_ended"] <= running["progress"]["tasks"] == 20_000
+    assert 0 < running["progress"]["tasks_ended"] <= running["progress"]["tasks"] == 2000
     assert waiting["ran_s"] is None
     assert client.post("/api/jobs/cancel", {"job": second["id"]})[1]["job"]["state"] == "cancelled"
     assert client.post("/api/jobs/cancel", {"job": first["id"]})[0] == 200
@@ -96,37 +141,6 @@ def test_a_queue_has_an_end(client, monkeypatch, scenario_text):
     monkeypatch.setattr("ncsim_viz.server.jobs.MAX_WAITING", 0)
 
     assert client.post("/api/jobs", {"yaml": scenario_text})[0] == 429
-
-
-GREEDY = """
-import sys
-import time
-
-def memory():
-    bytearray(10**9)
-
-def output():
-    with open(sys.argv[4] + ".big", "wb") as file:
-        file.write(bytes(2_000_000))
-
-def wall():
-    time.sleep(60)
-
-def quiet():
-    raise SystemExit(1)
-"""
-
-
-@pytest.fixture
-def greedy(tmp_path, monkeypatch):
-    """Return a function that puts something else in the place of a run."""
-
-    def install(name):
-        (tmp_path / "greedy.py").write_text(GREEDY)
-        monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-        monkeypatch.setattr("ncsim_viz.server.jobs.ENTRY", f"greedy:{name}")
-
-    return install
 
 
 @pytest.mark.parametrize(
@@ -182,4 +196,7 @@ def test_what_a_process_started_ends_with_it(monkeypatch, tmp_path):
 
     process.close()
 
+    deadline_s = time.monotonic() + 10
+    while is_running(child) and time.monotonic() < deadline_s:
+        time.sleep(0.02)
     assert not is_running(child)

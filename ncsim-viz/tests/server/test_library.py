@@ -119,6 +119,16 @@ def test_a_run_with_a_file_that_leads_out_is_not_shown(tmp_path, name):
         Library(root).find("a")
 
 
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_folder_that_may_not_be_read_hides_nothing_else(tmp_path):
+    put(tmp_path / "a")
+    put(tmp_path / "closed").chmod(0)
+    try:
+        assert ids(tmp_path) == {"a": "finished"}
+    finally:
+        (tmp_path / "closed").chmod(0o700)
+
+
 def test_a_list_says_how_runs_ended(tmp_path, ended_process):
     put(tmp_path / "whole")
     put(tmp_path / "torn", HEADER)

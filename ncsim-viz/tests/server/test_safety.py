@@ -4,6 +4,8 @@ import time
 from contextlib import closing
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from ncsim_viz.server import handler, serving
 from ncsim_viz.server.errors import RequestError
 from ncsim_viz.server.guards import is_local_host, page_policy, path_below
@@ -180,6 +182,20 @@ def test_malformed_requests_are_refused_and_the_connection_ends(server, lines, s
     is_read = "Content-Length: 2" in lines and len(lines) == 2
     assert answer.split()[1] == status
     assert answer.count(b"HTTP/1.1 ") == 1 + is_read  # else the rest may be part of the body
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    start=st.sampled_from([b"", b"GET ", b"POST /api/jobs HTTP/1.1\r\nHost: "]), rest=st.binary()
+)
+def test_no_bytes_take_the_server_down(client, start, rest):
+    with connect(client.server) as to:
+        to.sendall(start + rest)
+        to.shutdown(socket.SHUT_WR)
+        answer = b"".join(iter(lambda: to.recv(65536), b""))
+
+    assert b" 200 " not in answer.partition(b"\r\n")[0]
+    assert client.get("/api/jobs")[0] == 200
 
 
 def test_clients_that_say_nothing_half_or_rubbish_hold_nobody_up(client, monkeypatch):

@@ -12,7 +12,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal, TypeAlias
+from typing import Final, Literal, NamedTuple, TypeAlias
 
 from ncsim_core.sweep.store import STORE_NAME
 from ncsim_core.trace.files import TRACE_NAMES
@@ -26,6 +26,7 @@ MAX_DEPTH: Final = 8
 MAX_FOLDERS: Final = 20_000
 FRESH_s: Final = 10.0
 """A run of another machine, whose processes cannot be seen, lives as long as its trace grows."""
+FILES: Final = RUN_FILE_NAMES | {STORE_NAME}
 PARTIAL: Final = re.compile(r"\.(?P<name>.+)\.partial-(?P<process>\d+)-[0-9a-f]{8}\Z")
 
 Stage: TypeAlias = Literal["finished", "running", "abandoned"]
@@ -51,7 +52,7 @@ class Place:
     def trace(self) -> Path | None:
         """Return its trace; ``None`` if it has none that can be read yet."""
         found = (self.folder / name for name in TRACE_NAMES)
-        return next((path for path in found if path.is_file()), None)
+        return next(filter(_is_file, found), None)
 
 
 class Library:
@@ -70,20 +71,22 @@ class Library:
         return self.root.name or str(self.root)
 
     def places(self) -> Iterator[Place]:
-        """Yield all runs and studies, folder by folder."""
-        root = self._finished(self.root)
-        if root is not None:
-            yield root
-        waiting = [(self.root, 0)]
+        """Yield all runs and studies, folder by folder; every folder is read once."""
+        waiting: list[tuple[Path, int, Place | None]] = [(self.root, 0, None)]
         seen = 0
         while waiting and seen < MAX_FOLDERS:
-            folder, depth = waiting.pop()
+            folder, depth, unfinished = waiting.pop()
             seen += 1
-            names = _folders_in(folder)
-            yield from self._places_in(folder, names)
+            listing = _listed(folder, self.root)
+            place = _chosen(self._finished(folder, listing), unfinished)
+            if place is not None:
+                yield place
+            coming = self._unfinished(folder, listing.folders)
+            visible = [name for name in listing.folders if not name.startswith(".")]
+            yield from (coming[name] for name in sorted(coming.keys() - set(visible)))
             if depth < MAX_DEPTH:
-                visible = [folder / name for name in names if not name.startswith(".")]
-                waiting += [(each, depth + 1) for each in reversed(visible)]
+                below = ((folder / name, depth + 1, coming.get(name)) for name in visible)
+                waiting += reversed(list(below))
 
     def find(self, identity: str) -> Place:
         """Return the run or study with an id; of two, the one that is being written.
@@ -94,9 +97,9 @@ class Library:
         path = path_below(self.root, identity)
         unfinished = None
         if path != self.root:  # looked at first: it may become the finished one meanwhile
-            siblings = _folders_in(path.parent)
+            siblings = _listed(path.parent, self.root).folders
             unfinished = self._unfinished(path.parent, siblings).get(path.name)
-        place = _chosen(self._finished(path), unfinished)
+        place = _chosen(self._finished(path, _listed(path, self.root)), unfinished)
         if place is None:
             raise missing(repr(identity))
         return place
@@ -123,15 +126,6 @@ class Library:
             raise missing(f"{kind} {identity!r}")
         return place
 
-    def _places_in(self, folder: Path, names: list[str]) -> Iterator[Place]:
-        """Yield what the folders in a folder are."""
-        unfinished = self._unfinished(folder, names)
-        visible = {name for name in names if not name.startswith(".")}
-        for name in sorted(visible | unfinished.keys()):
-            place = _chosen(self._finished(folder / name), unfinished.get(name))
-            if place is not None:
-                yield place
-
     def _unfinished(self, folder: Path, names: list[str]) -> dict[str, Place]:
         """Return the runs that are being written into a folder, by the names they are to have."""
         found: dict[str, Place] = {}
@@ -144,32 +138,51 @@ class Library:
             place = Place(self._id(folder / match["name"]), folder / name, "run", stage)
             earlier = found.get(match["name"])
             is_better = earlier is None or earlier.stage == "abandoned"
-            if (
-                is_better
-                and self._is_contained(place.folder)
-                and (stage == "running" or place.trace)
-            ):
+            is_shown = stage == "running" or place.trace is not None
+            if is_better and is_shown and not _listed(place.folder, self.root).leads_out:
                 found[match["name"]] = place
         return found
 
-    def _finished(self, path: Path) -> Place | None:
+    def _finished(self, path: Path, listing: "_Listing") -> Place | None:
         """Return what a folder itself is, if anything."""
-        if not path.is_dir() or not self._is_contained(path):
+        if listing.leads_out:
             return None
-        if (path / STORE_NAME).is_file():
+        if STORE_NAME in listing.files:
             return Place(self._id(path), path, "study")
-        place = Place(self._id(path), path, "run")
-        is_run = place.trace is not None or (path / METRICS_NAME).is_file()
-        return place if is_run else None
+        is_run = not listing.files.isdisjoint((*TRACE_NAMES, METRICS_NAME))
+        return Place(self._id(path), path, "run") if is_run else None
 
     def _id(self, path: Path) -> str:
         return path.relative_to(self.root).as_posix()
 
-    def _is_contained(self, folder: Path) -> bool:
-        """Return whether a folder and the files that may be read in it are below the root."""
-        files = (folder / name for name in (*RUN_FILE_NAMES, STORE_NAME))
-        paths = [folder, *(path for path in files if path.is_symlink())]
-        return all(is_inside(path, self.root) for path in paths)
+
+class _Listing(NamedTuple):
+    """What is in a folder.
+
+    Args:
+        folders: Names of folders, links left aside, in order.
+        files: Names of files of runs and studies.
+        leads_out: Whether one of those is a link to somewhere else.
+    """
+
+    folders: list[str]
+    files: frozenset[str]
+    leads_out: bool
+
+
+def _listed(folder: Path, root: Path) -> _Listing:
+    """Return what is in a folder; nothing if it is none, or may not be read."""
+    folders: list[str] = []
+    files: list[str] = []
+    links: list[str] = []
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for each in entries:
+            if each.is_dir(follow_symlinks=False):
+                folders.append(each.name)
+            elif each.name in FILES:
+                (links if each.is_symlink() else files).append(each.name)
+    leads_out = any(not is_inside(folder / name, root) for name in links)
+    return _Listing(sorted(folders), frozenset(files + links), leads_out)
 
 
 def _chosen(finished: Place | None, unfinished: Place | None) -> Place | None:
@@ -179,13 +192,11 @@ def _chosen(finished: Place | None, unfinished: Place | None) -> Place | None:
     return finished
 
 
-def _folders_in(folder: Path) -> list[str]:
-    """Return the names of folders, links left aside, in order."""
+def _is_file(path: Path) -> bool:
     try:
-        with os.scandir(folder) as entries:
-            return sorted(each.name for each in entries if each.is_dir(follow_symlinks=False))
-    except OSError:  # not allowed, or gone meanwhile
-        return []
+        return path.is_file()
+    except OSError:  # in a folder that may not be read
+        return False
 
 
 def _is_alive(process: int) -> bool:
