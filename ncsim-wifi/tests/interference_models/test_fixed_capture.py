@@ -10,7 +10,7 @@ from ncsim_wifi.mac.efficiency import data_airtime_fraction
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.radio import Radio
 from ncsim_wifi.validation.engine_runs import FIXED_CAPTURE, measure
-from ncsim_wifi.validation.scenes import parallel, single
+from ncsim_wifi.validation.scenes import Scene, parallel, single
 
 
 def model_of(network, *, options=None, **rf):
@@ -33,6 +33,12 @@ def test_a_frame_exactly_at_the_decode_threshold_is_decoded():
 
 def test_a_hidden_frame_that_is_decoded_costs_nothing():
     assert model_of(parallel(2, 115.0).network()).factors([0, 1], [0, 1]).tolist() == [1.0, 1.0]
+
+
+def test_an_interferer_without_any_rate_sends_nothing():
+    scene = Scene(((0.0, 0.0), (0.0, 80.0)), ((30.0, 0.0), (200.0, 80.0)), ())
+
+    assert model_of(scene.network()).factors([0], [0, 1]).tolist() == [1.0]
 
 
 def test_a_floor_holds_for_lost_frames_too():
