@@ -88,15 +88,12 @@ def test_the_named_test_fails_when_the_named_function_is_broken(label, noticed):
     assert [function, test] in noticed
 
 
-UNCITED = {"eq:fair_share"}  # the five steps of the refresh are cited where they are listed
-
-
 @pytest.mark.parametrize("label", [label for _, label in EQUATIONS])
 def test_the_function_says_which_equation_it_is(label, breaking):
     number, _, _, function, _ = ROWS[label]
     told = inspect.getdoc(breaking.function_of(function)) or ""
 
     if label.startswith("eq:"):
-        assert label in told or re.search(rf"Eqs?\. {number}\b", told) or label in UNCITED
+        assert label in told or re.search(rf"Eqs?\. {number}\b", told)
     else:
         assert "Source: " in told

@@ -58,7 +58,10 @@ def update_factors(switched: Switched, state: State) -> list[LinkIndex]:
 
 
 def update_shares(touched: Iterable[LinkIndex], state: State, setup: Setup) -> dict[int, Transfer]:
-    """Bring the shares of active links up to date; return the transfers to look at again."""
+    """Bring the shares of active links up to date; return the transfers to look at again.
+
+    Source: Eq. 1 (``eq:fair_share``).
+    """
     links, bandwidth_MBps = state.links, setup.bandwidth_MBps
     flows_on, factor_of, share_of = links.flows, links.factor, links.share_MBps
     affected: dict[int, Transfer] = {}
