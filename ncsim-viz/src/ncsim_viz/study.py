@@ -56,19 +56,28 @@ def study_document(
         counts = store.counts()
         every = table_of(store)
     numbers, runs = _selected(every, where or {})
-    matrix, roles, note = _matrix(runs, policy, mode)
-    slowdowns = _slowdowns(runs, mode)
+    tables = _tables(runs, policy, mode)
     left_out = max(0, len(runs.rows) - MAX_ROWS)
-    notes = [note, f"{left_out} runs are not listed one by one." if left_out else ""]
+    notes = [tables["note"], f"{left_out} runs are not listed one by one." if left_out else ""]
     return {
         "name": every.title,
         "planned": planned,
         "counts": counts,
         "factors": [_factor(every, name) for name in parameters(every)],
-        "roles": roles,
-        "note": " ".join(filter(None, notes)),
         "numbers": numbers[:MAX_ROWS],
         "runs": _table(replace(runs, rows=runs.rows[:MAX_ROWS])),
+        **tables,
+        "note": " ".join(str(note) for note in notes if note),
+    }
+
+
+def _tables(runs: Table, policy: str, mode: str) -> dict[str, object]:
+    """Return what the runs amount to, and why some of it is missing."""
+    matrix, roles, note = _matrix(runs, policy, mode)
+    slowdowns = _slowdowns(runs, mode)
+    return {
+        "roles": roles,
+        "note": note,
         "winners": None if matrix is None else _table(matrix),
         "totals": None if matrix is None else _table(policy_totals(matrix)),
         "groups": [
