@@ -3,7 +3,7 @@
 All of it is frozen; progress lives in ``ncsim_core.engine.state``.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NewType
@@ -62,7 +62,8 @@ class DAG:
     def __post_init__(self) -> None:
         _check_tasks(self)
         _check_dependencies(self)
-        cycle = find_cycle(self)
+        ends = [(each.source, each.target) for each in self.dependencies]
+        cycle = find_cycle((task.id for task in self.tasks), ends)
         if cycle:
             raise ScenarioError(f"DAG {self.id!r} has a cycle: {' -> '.join(cycle)}")
 
@@ -103,34 +104,40 @@ class PlacementPlan:
     nodes: Mapping[TaskId, NodeId] = field(default_factory=dict)
 
 
-def find_cycle(dag: DAG) -> list[TaskId]:
+def find_cycle(tasks: Iterable[str], edges: Collection[tuple[str, str]]) -> list[str]:
     """Return the tasks of one cycle, first repeated at the end, or an empty list.
 
     Iterative, so that a chain of any length is fine.
+
+    Args:
+        tasks: Every task that an edge names, and perhaps others.
+        edges: Pairs of producing and consuming task.
     """
-    followers: dict[TaskId, list[TaskId]] = {task.id: [] for task in dag.tasks}
+    followers: dict[str, list[str]] = {task: [] for task in tasks}
     unmet = dict.fromkeys(followers, 0)
-    for dependency in dag.dependencies:
-        followers[dependency.source].append(dependency.target)
-        unmet[dependency.target] += 1
-    free = [task_id for task_id, count in unmet.items() if count == 0]
-    for task_id in free:
-        for follower in followers[task_id]:
+    for source, target in edges:
+        followers[source].append(target)
+        unmet[target] += 1
+    free = [task for task, count in unmet.items() if count == 0]
+    for task in free:
+        for follower in followers[task]:
             unmet[follower] -= 1
             if unmet[follower] == 0:
                 free.append(follower)
-    stuck = {task_id for task_id, count in unmet.items() if count > 0}
-    return _walk_back_to_a_repeat(dag, stuck) if stuck else []
+    stuck = {task: None for task, count in unmet.items() if count > 0}
+    return _walk_back_to_a_repeat(edges, stuck) if stuck else []
 
 
-def _walk_back_to_a_repeat(dag: DAG, stuck: set[TaskId]) -> list[TaskId]:
+def _walk_back_to_a_repeat(
+    edges: Iterable[tuple[str, str]], stuck: Mapping[str, None]
+) -> list[str]:
     """Return a cycle among tasks that each wait for another of them."""
-    waits_for: dict[TaskId, TaskId] = {}
-    for dependency in dag.dependencies:
-        if dependency.target in stuck and dependency.source in stuck:
-            waits_for.setdefault(dependency.target, dependency.source)
-    at = next(task.id for task in dag.tasks if task.id in stuck)
-    trail: dict[TaskId, None] = {}
+    waits_for: dict[str, str] = {}
+    for source, target in edges:
+        if source in stuck and target in stuck:
+            waits_for.setdefault(target, source)
+    at = next(iter(stuck))
+    trail: dict[str, None] = {}
     while at not in trail:
         trail[at] = None
         at = waits_for[at]

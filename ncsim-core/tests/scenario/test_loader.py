@@ -1,3 +1,4 @@
+import gc
 import json
 import subprocess
 import sys
@@ -123,3 +124,15 @@ def test_a_good_scenario_loads_without_jsonschema_and_numpy(tmp_path):
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
 
     assert run.stdout.strip() == "set()"
+
+
+def test_loading_leaves_the_garbage_collector_as_it_was(core: Registry, full):
+    text = full.to_yaml()
+
+    for is_enabled in (False, True):
+        (gc.enable if is_enabled else gc.disable)()
+        parse_scenario(text, registry=core)
+        assert gc.isenabled() is is_enabled
+        with pytest.raises(ScenarioFaults):
+            parse_scenario("scenario: {}", registry=core)
+        assert gc.isenabled() is is_enabled

@@ -5,7 +5,6 @@ mistake is reported once, and all mistakes at once.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -15,6 +14,7 @@ from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
 from ncsim_core.scenario.model import Config
 from ncsim_core.scenario.resolution import NEEDS_RADIO, RADIO
 from ncsim_core.scenario.wording import Hints
+from ncsim_core.workflow import find_cycle
 
 MAX_TASKS_SHOWN = 20
 
@@ -130,13 +130,8 @@ def _edge_problems(
 
 def _cycle(edges: Mapping[tuple[str, str], Path]) -> Iterator[Problem]:
     """Yield one cycle, if there is any, at the edge that closes it."""
-    sorter: TopologicalSorter[str] = TopologicalSorter()
-    for source, target in edges:
-        sorter.add(target, source)
-    try:
-        sorter.prepare()
-    except CycleError as error:
-        tasks: list[str] = error.args[1]
+    tasks = find_cycle((task for ends in edges for task in ends), edges.keys())
+    if tasks:
         path = max(edges[pair] for pair in pairwise(tasks))
         yield Problem(path, f"the edges form a cycle: {_listed(tasks)}")
 
