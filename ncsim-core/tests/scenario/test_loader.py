@@ -7,7 +7,7 @@ import time
 import pytest
 from ncsim_core.network import Link, Node, Position
 from ncsim_core.registry import Registry
-from ncsim_core.scenario import load_scenario, parse_scenario
+from ncsim_core.scenario import ScenarioFaults, load_scenario, parse_scenario
 from ncsim_core.workflow import Dependency, Task
 
 FULL = """
