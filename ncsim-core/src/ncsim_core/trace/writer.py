@@ -151,6 +151,11 @@ class TraceWriter(Observer):
     ) -> None:
         if self._level != "full" or not changes:
             return
+        by = "s" if cause.change == "start" else "e"
+        self._counts["recalc"] += 1
+        if len(changes) == 1:
+            self._append(self._recalc_of_one(at_us, by, cause.transfer, changes[0]))
+            return
         text = self._float_text
         transfers = rates = links = contenders = hidden = factors = flows = ""
         for transfer, rate_MBps, bottleneck, flow_count, competition in changes:
@@ -162,12 +167,20 @@ class TraceWriter(Observer):
             hidden += f",{hidden_count}"
             factors += f",{text(hidden_factor)}"
             flows += f",{flow_count}"
-        by = "s" if cause.change == "start" else "e"
-        self._counts["recalc"] += 1
         self._append(
             f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{transfers[1:]}],'
             f'"r":[{rates[1:]}],"l":[{links[1:]}],"nc":[{contenders[1:]}],"nh":[{hidden[1:]}],'
             f'"fh":[{factors[1:]}],"f":[{flows[1:]}]}}\n'
+        )
+
+    def _recalc_of_one(self, at_us: Instant, by: str, cause: int, change: RateChange) -> str:
+        """Return the line for a single change, which is half of them, in half the time."""
+        transfer, rate_MBps, bottleneck, flows, (contenders, hidden, hidden_factor) = change
+        text = self._float_text
+        return (
+            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause}],"x":[{transfer}],'
+            f'"r":[{text(rate_MBps)}],"l":[{bottleneck}],"nc":[{contenders}],"nh":[{hidden}],'
+            f'"fh":[{text(hidden_factor)}],"f":[{flows}]}}\n'
         )
 
     @override
