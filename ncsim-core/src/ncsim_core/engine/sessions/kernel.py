@@ -15,9 +15,12 @@ F = TypeVar("F", bound=Callable[..., object])
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
 
-STAMP, TOUCHED, LOOKED_AT, CHANGED = range(4)
-"""What ``Progress.counters`` count: updates, links whose load moved, how many of these have been
-looked at, and how many factors changed."""
+LOOKED_AT, CHANGED = range(2)
+"""What ``Progress.counters`` count: links that have been looked at, and factors that changed."""
+
+ALL_BITS = -1
+NOTHING = np.iinfo(np.int64).max
+ANYTHING = np.iinfo(np.uint64).max
 
 
 class Arrays(NamedTuple):
@@ -32,6 +35,7 @@ class Arrays(NamedTuple):
         limits: By link and level, the greatest hidden sum; the greatest number after the last.
         share_rows: By link and level, the row in ``shares``.
         shares: Factors by row and number of stations; not a number where not worked out yet.
+        is_constant: By row of ``shares``, whether the number of stations does not matter.
     """
 
     starts: IntArray
@@ -42,24 +46,30 @@ class Arrays(NamedTuple):
     limits: IntArray
     share_rows: IntArray
     shares: FloatArray
+    is_constant: NDArray[np.bool_]
 
 
 class Progress(NamedTuple):
-    """What changes in a run, and what the last update found.
+    """What changes in a run, by link, and what the last update found.
+
+    A factor is looked up again only when the load, as far as ``mask`` lets it count, leaves the
+    window in which neither level nor number of contenders changes.
 
     Args:
-        load: By link.
-        factor: By link; has no meaning for inactive links.
-        stamps: By link, the last update that touched it; -1 for inactive links.
-        touched: The active links whose load moved, and those that became active.
-        changed: The links whose factor changed.
-        counters: See ``STAMP``.
+        load: Contenders and hidden sum.
+        factor: Has no meaning for inactive links.
+        mask: Bits of the load that count.
+        start: Where the window begins.
+        width: How far above it the window reaches; anything for inactive links.
+        changed: The links whose factor changed, from the front.
+        counters: See ``LOOKED_AT``.
     """
 
     load: IntArray
     factor: FloatArray
-    stamps: IntArray
-    touched: IntArray
+    mask: IntArray
+    start: IntArray
+    width: NDArray[np.uint64]
     changed: IntArray
     counters: IntArray
 
@@ -78,7 +88,7 @@ def compiled(function: F) -> F:
 
 @compiled
 def switch_links(switched: IntArray, on_count: int, arrays: Arrays, progress: Progress) -> None:
-    """Add what switched links do to the loads of all, and list the active links it is done to.
+    """Add what switched links do to the loads of all, and open or close their windows.
 
     Args:
         switched: Links, those that become active first.
@@ -86,57 +96,70 @@ def switch_links(switched: IntArray, on_count: int, arrays: Arrays, progress: Pr
         arrays: What is added to which.
         progress: Changed.
     """
-    load, stamps, touched = progress.load, progress.stamps, progress.touched
     is_conflict, hidden_units = arrays.is_conflict, arrays.hidden_units
     contender = 1 << arrays.count_shift
-    stamp = progress.counters[STAMP] + 1
-    count = 0
     for k in range(len(switched)):
-        stamps[switched[k]] = -1
+        link, sign = switched[k], -1
+        progress.width[link] = ANYTHING
         if k < on_count:
-            stamps[switched[k]] = stamp
-            progress.factor[switched[k]] = 1.0
-            touched[count] = switched[k]
-            count += 1
-    for k in range(len(switched)):
-        sign = 1 if k < on_count else -1
-        for entry in range(arrays.starts[switched[k]], arrays.starts[switched[k] + 1]):
-            link = arrays.affected[entry]
-            load[link] += sign * (contender if is_conflict[entry] else hidden_units[entry])
-            if 0 <= stamps[link] < stamp:
-                stamps[link] = stamp
-                touched[count] = link
-                count += 1
-    progress.counters[STAMP], progress.counters[TOUCHED] = stamp, count
+            sign = 1
+            progress.factor[link] = 1.0
+            progress.mask[link], progress.start[link] = ALL_BITS, NOTHING
+            progress.width[link] = 0
+        for entry in range(arrays.starts[link], arrays.starts[link + 1]):
+            increment = contender if is_conflict[entry] else hidden_units[entry]
+            progress.load[arrays.affected[entry]] += sign * increment
     progress.counters[LOOKED_AT], progress.counters[CHANGED] = 0, 0
 
 
 @compiled
 def look_up(arrays: Arrays, progress: Progress) -> bool:
-    """Look up the factors of touched links; return whether none is missing from the shares.
+    """Look up the factors of links outside their window; return whether none is missing.
 
     Args:
         arrays: Limits and shares.
-        progress: Changed; if a share is missing, ``LOOKED_AT`` counts to the link that needs it.
+        progress: Changed; if a share is missing, ``LOOKED_AT`` is the link that needs it.
     """
-    load, factor, counters = progress.load, progress.factor, progress.counters
-    units_mask = (1 << arrays.count_shift) - 1
-    for k in range(counters[LOOKED_AT], counters[TOUCHED]):
-        link = progress.touched[k]
-        stations = (load[link] >> arrays.count_shift) + 1
-        units = load[link] & units_mask
-        level = 0
-        while arrays.limits[link, level] < units:
-            level += 1
-        share = arrays.shares[arrays.share_rows[link, level], stations]
+    load, counters = progress.load, progress.counters
+    for link in range(counters[LOOKED_AT], len(load)):
+        offset = (load[link] & progress.mask[link]) - progress.start[link]
+        if np.uint64(offset) <= progress.width[link]:  # below the window it is huge
+            continue
+        level = level_of(link, arrays, progress)
+        row = arrays.share_rows[link, level]
+        share = arrays.shares[row, (load[link] >> arrays.count_shift) + 1]
         if np.isnan(share):
-            counters[LOOKED_AT] = k
+            counters[LOOKED_AT] = link
             return False
-        if share != factor[link]:
-            factor[link] = share
+        open_window(link, level, arrays, progress)
+        if share != progress.factor[link]:
+            progress.factor[link] = share
             progress.changed[counters[CHANGED]] = link
             counters[CHANGED] += 1
     return True
+
+
+@compiled
+def level_of(link: int, arrays: Arrays, progress: Progress) -> int:
+    """Return the level of a link."""
+    units = progress.load[link] & ((1 << arrays.count_shift) - 1)
+    level = 0
+    while arrays.limits[link, level] < units:
+        level += 1
+    return level
+
+
+@compiled
+def open_window(link: int, level: int, arrays: Arrays, progress: Progress) -> None:
+    """Set the window of a link to the loads at which it stays as it is."""
+    units_mask = (1 << arrays.count_shift) - 1
+    least = 0 if level == 0 else arrays.limits[link, level - 1] + 1
+    progress.width[link] = min(arrays.limits[link, level], units_mask) - least
+    if arrays.is_constant[arrays.share_rows[link, level]]:
+        progress.mask[link], progress.start[link] = units_mask, least
+    else:
+        contenders = progress.load[link] & ~units_mask
+        progress.mask[link], progress.start[link] = ALL_BITS, contenders + least
 
 
 @compiled

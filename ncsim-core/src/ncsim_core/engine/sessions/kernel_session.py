@@ -34,10 +34,11 @@ class KernelSession(TabledSession):
         self._progress = kernel.Progress(
             load=np.zeros(count, np.int64),
             factor=np.ones(count),
-            stamps=np.full(count, -1, np.int64),
-            touched=np.zeros(count, np.int64),
+            mask=np.zeros(count, np.int64),
+            start=np.zeros(count, np.int64),
+            width=np.full(count, kernel.ANYTHING, np.uint64),
             changed=np.zeros(count, np.int64),
-            counters=np.zeros(4, np.int64),
+            counters=np.zeros(2, np.int64),
         )
 
     @override
@@ -57,7 +58,7 @@ class KernelSession(TabledSession):
 
     def _fill_missing_share(self) -> None:
         """Work out the share at which the kernel stopped."""
-        link = int(self._progress.touched[self._progress.counters[kernel.LOOKED_AT]])
+        link = int(self._progress.counters[kernel.LOOKED_AT])
         (load,) = self._loads_of([link])
         stations = (load >> self._loads.count_shift) + 1
         level = bisect_left(self._loads.tables.limits[link], load & self._loads.units_mask)
@@ -86,6 +87,7 @@ def _arrays_of(loads: Loads) -> tuple[list[ShareRow], kernel.Arrays]:
                 limits=_padded([(*each, GREATEST) for each in tables.limits]),
                 share_rows=_share_rows(tables, rows),
                 shares=np.full((len(rows), loads.most_contenders + 2), np.nan),
+                is_constant=np.array([row.is_constant for row in rows], np.bool_),
             ),
         )
     return _ARRAYS[loads]
