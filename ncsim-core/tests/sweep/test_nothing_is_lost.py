@@ -289,3 +289,21 @@ def test_a_full_disk_ends_the_sweep_and_keeps_what_was_done(tmp_path):
     assert "full" in done.stderr, done
     assert "code 1" in done.stdout
     assert "3000 runs, 3000 completed, 0 to do" in done.stdout
+
+
+@needs_unshare
+def test_a_study_that_may_only_be_read_is_reported(tmp_path, ncsim):
+    path = sweep_file(tmp_path, {"scheduler.options.mood": ["ok"]})
+    study = tmp_path / "study"
+    finish(ncsim("sweep", path, "-o", study, "--executor", "serial"), 0)
+    report = "from ncsim_core.cli.main import main; main(['report', '/mnt'])"
+    script = (
+        f"mount --bind {study} /mnt && mount -o remount,ro,bind /mnt && "
+        f'exec {sys.executable} -c "{report}"'
+    )
+    done = subprocess.run(
+        ["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, check=False
+    )
+
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[2].startswith("ok ")

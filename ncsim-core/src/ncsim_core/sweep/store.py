@@ -6,6 +6,7 @@ folder reuses them; ``member`` says which runs of which plan they belong to.
 """
 
 import json
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -64,9 +65,10 @@ class Store:
         if path is not None:
             path.mkdir(parents=True, exist_ok=True)
         try:
-            self._connection = sqlite3.connect(file or ":memory:", timeout=BUSY_s)
-            self._connection.execute("PRAGMA journal_mode=WAL")
-            self._connection.executescript(_TABLES)
+            if file is not None and must_exist and not os.access(file.parent, os.W_OK):
+                self._connection = _opened_for_reading(file)
+            else:
+                self._connection = _opened(file)
             self._check_format()
         except sqlite3.DatabaseError as error:
             raise ScenarioError(f"{file}: {error}") from error
@@ -191,11 +193,29 @@ class Store:
         return _Transaction(self._connection, self.path)
 
     def _check_format(self) -> None:
-        with self._connection as connection:
-            connection.execute("INSERT OR IGNORE INTO meta VALUES ('format', ?)", (FORMAT,))
-            row = connection.execute("SELECT value FROM meta WHERE key = 'format'").fetchone()
-        if row[0] != FORMAT:
-            raise ScenarioError(f"{self.path}: is of format {row[0]}, this ncsim reads {FORMAT}")
+        query = "SELECT value FROM meta WHERE key = 'format'"
+        row = self._connection.execute(query).fetchone()
+        found = None if row is None else row[0]
+        if found != FORMAT:
+            raise ScenarioError(f"{self.path}: is of format {found}, this ncsim reads {FORMAT}")
+
+
+def _opened(file: Path | None) -> sqlite3.Connection:
+    """Return a connection to a study that may be written, its tables made if need be."""
+    connection = sqlite3.connect(file or ":memory:", timeout=BUSY_s)
+    try:
+        connection.execute("PRAGMA journal_mode=WAL")
+    except sqlite3.OperationalError:  # some network file systems cannot; as safe, only slower
+        connection.execute("PRAGMA journal_mode=DELETE")
+    connection.executescript(_TABLES)
+    with connection:
+        connection.execute("INSERT OR IGNORE INTO meta VALUES ('format', ?)", (FORMAT,))
+    return connection
+
+
+def _opened_for_reading(file: Path) -> sqlite3.Connection:
+    """Return a connection to a study where nobody may write, such as a colleague's."""
+    return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
 
 
 class _Transaction:
