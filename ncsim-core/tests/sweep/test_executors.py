@@ -40,6 +40,31 @@ def threads(request):
     ASKED.append(request)
     return ThreadPoolExecutor(request.workers)
 """
+BREAKING = """
+from concurrent.futures import BrokenExecutor, Executor, Future
+
+MADE = []
+
+
+class Breaking(Executor):
+    \"\"\"The first one takes two chunks, does neither, and takes no third.\"\"\"
+
+    workers = 4
+
+    def __init__(self, request):
+        MADE.append(self)
+        self._is_first = len(MADE) == 1
+        self._taken = 0
+
+    def submit(self, fn, /, *args, **more):
+        self._taken += 1
+        future = Future()
+        if not self._is_first:
+            future.set_result(fn(*args, **more))
+        elif self._taken > 2:
+            raise BrokenExecutor("no more")
+        return future
+"""
 DESERTED = """
 from concurrent.futures import Executor, Future
 
@@ -98,6 +123,18 @@ def test_a_package_offers_an_executor_through_an_entry_point(fake_dist, path, tm
 
     assert (code, err) == (0, "")
     assert [each.workers for each in ASKED] == [3]
+    assert timeless(tmp_path / "study") == whole
+
+
+def test_runs_in_flight_when_an_executor_takes_no_more_are_done_by_the_next(
+    fake_dist, path, tmp_path, whole
+):
+    folder = fake_dist("my-pool", {"my_pool": BREAKING}, entry_points={})
+    info = folder / "my_pool-1.0.dist-info" / "entry_points.txt"
+    info.write_text("[ncsim.executors]\nbreaking = my_pool:Breaking\n")
+    options = ("--executor", "breaking", "-j", 4)
+
+    assert ncsim("sweep", path, "-o", tmp_path / "study", *options)[0] == 0
     assert timeless(tmp_path / "study") == whole
 
 

@@ -121,8 +121,6 @@ class Dispatcher:
             for future in finished:
                 self._in_flight.pop(future)
                 yield future.result()
-            for left in self._in_flight.values():
-                self._suspects.extend(left)
             self._replace_executor()
 
     def _is_guilty(self, item: Item, error: Exception) -> bool:
@@ -142,7 +140,12 @@ class Dispatcher:
         return failed_row(item.key, text)
 
     def _replace_executor(self) -> None:
-        """Start anew, once it is certain that workers can start at all."""
+        """Start anew, once it is certain that workers can start at all.
+
+        Whatever was in flight is a suspect.
+        """
+        for left in self._in_flight.values():
+            self._suspects.extend(left)
         self._in_flight.clear()
         self._executor.shutdown(wait=False, cancel_futures=True)
         self._executor = self._new_executor()

@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Self
 
-from ncsim_core.errors import NcsimError, ScenarioError
+from ncsim_core.errors import EngineError, NcsimError, ScenarioError
 from ncsim_core.sweep.axes import Run
 from ncsim_core.sweep.dispatch import Dispatcher
 from ncsim_core.sweep.executors import ExecutorFactory, ExecutorRequest, executor_factory
@@ -77,7 +77,7 @@ class SweepResults:
 
         Raises:
             ScenarioError: Results cannot be written.
-            NcsimError: Workers do not start.
+            NcsimError: Workers do not start, or none is left.
         """
         self._store.register(self.plan, self.total)
         request = ExecutorRequest(self._options.workers, self._options.address)
@@ -92,6 +92,8 @@ class SweepResults:
                     for run in self._members.pop(row.key, ()):
                         yield record_of(self.plan, run.values, run.seed, row)
                 yield from self._taken()
+            if self._members:
+                raise EngineError(f"the sweep ended with {len(self._members)} runs not done")
         self._is_done = True
 
     def table(self) -> Table:
