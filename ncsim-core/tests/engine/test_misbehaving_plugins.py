@@ -103,6 +103,7 @@ PLANTED = {
         "interference_model",
         lambda bad: with_part("interference", "open_session", bad),
     ),
+    "tables": ("interference_model", lambda bad: with_part("interference", "tables", bad)),
     "competition": (
         "interference_model",
         lambda bad: with_part("interference", "competition", bad),
@@ -172,4 +173,5 @@ MEANINGFUL = {
     ("injections", "[]"),
     ("injections", "{}"),
     ("route", "None"),
+    ("tables", "None"),
 }

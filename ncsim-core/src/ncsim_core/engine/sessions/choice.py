@@ -22,6 +22,7 @@ from ncsim_core.engine.boundary import CheckedSession, asked
 from ncsim_core.engine.sessions.links_in_use import LinksInUse
 from ncsim_core.engine.setup import Setup
 from ncsim_core.errors import PluginError
+from ncsim_core.models import ComponentIdentity
 
 if TYPE_CHECKING:
     from ncsim_core.engine.sessions.loads import Loads
@@ -46,13 +47,25 @@ def session_of(setup: Setup) -> InterferenceSession | None:
         return CheckedSession(PlainSession(model, is_global=True), who)
     tables = asked(who, model.tables)
     if tables is not None:
-        fault = tables.fault(len(setup.network.links)) if tables not in _LOADS else None
-        if fault is not None:
-            raise PluginError(f"{who} has tables with {fault}")
+        check_tables(tables, len(setup.network.links), who)
         refreshes = 2 * len(setup.dependencies)
         return CheckedSession(session_for(model, tables, refreshes), who)
     session = asked(who, model.open_session)
     return None if isinstance(session, Unaffected) else CheckedSession(session, who)
+
+
+def check_tables(tables: object, link_count: int, who: ComponentIdentity) -> None:
+    """Check, once, that tables are such and fit a network.
+
+    Raises:
+        PluginError: They do not.
+    """
+    if not isinstance(tables, InterferenceTables):
+        raise PluginError(f"{who}: tables() gave {tables!r}")
+    if tables not in _LOADS:
+        fault = asked(who, lambda: tables.fault(link_count))
+        if fault is not None:
+            raise PluginError(f"{who} has tables with {fault}")
 
 
 def session_for(
