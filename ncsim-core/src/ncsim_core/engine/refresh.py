@@ -101,7 +101,7 @@ def report_rates(transfer: Transfer, change: Change, moves: Sequence[Move], stat
     """Show the new rates and what explains them to whoever watches."""
     cause = RateCause("start" if change is occupy else "finish", transfer.number)
     flows_on = state.links.flows
-    against = competition_of([bottleneck for _, _, _, bottleneck in moves], state)
+    against = competition_on([bottleneck for _, _, _, bottleneck in moves], state)
     changes = [
         rate_change_of((number, rate_MBps, bottleneck, len(flows_on[bottleneck]), competition))
         for (number, _, rate_MBps, bottleneck), competition in zip(moves, against, strict=True)
@@ -110,7 +110,7 @@ def report_rates(transfer: Transfer, change: Change, moves: Sequence[Move], stat
         observer.rates_assigned(state.now_us, cause, changes)
 
 
-def competition_of(links: Sequence[LinkIndex], state: State) -> Sequence[Competition]:
+def competition_on(links: Sequence[LinkIndex], state: State) -> Sequence[Competition]:
     """Return what each of ``links`` is up against now."""
     if state.interference is None:
         return [NO_COMPETITION] * len(links)
