@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from ncsim_core.api import prepare
 from ncsim_core.scenario.loader import load_scenario
+from ncsim_core.sweep.running import run_sweep
 from ncsim_core.trace.writer import TraceWriter
 
 GRID = Path(__file__).parents[2] / "examples" / "grid_4x4.yaml"
@@ -60,6 +61,76 @@ def test_the_bytes_are_those_of_the_golden_trace():
     # Any Python version and machine must agree. After a wanted change of models or format,
     # write it anew and read the difference:  python tests/integration/test_determinism.py
     assert trace_here() == GOLDEN.read_text(encoding="utf-8")
+
+
+RUN_AND_HASH = f"""
+import hashlib, sys, tempfile
+from pathlib import Path
+from ncsim_core.cli.main import exit_code_of
+from ncsim_core.cli.verbs import app
+with tempfile.TemporaryDirectory() as folder:
+    out = Path(folder, "out")
+    words = ["run", {str(GRID)!r}, "-o", str(out), "--gzip", "--quiet"]
+    exit_code_of(lambda: app(args=words, standalone_mode=False))
+    for name in ("scenario.yaml", "metrics.json", "trace.jsonl.gz"):
+        sys.stderr.write(name + " " + hashlib.sha256((out / name).read_bytes()).hexdigest() + " ")
+"""
+
+
+def folder_hashes(**environment):
+    done = subprocess.run(
+        [sys.executable, "-c", RUN_AND_HASH],
+        env=os.environ | environment,
+        capture_output=True,
+        check=True,
+    )
+    assert done.stderr.count(b" ") == 6
+    return done.stderr
+
+
+def test_all_files_of_a_run_but_its_circumstances_are_equal_everywhere():
+    plain = folder_hashes(PYTHONHASHSEED="3", LC_ALL="C", TZ="UTC")
+    other = folder_hashes(PYTHONHASHSEED="4", LC_ALL="tr_TR.UTF-8", TZ="Asia/Kathmandu")
+
+    assert plain == other
+
+
+SWEEP = {
+    "sweep": {
+        "base": {
+            "network": {"type": "random_geometric", "nodes": 6, "side_m": 80, "range_m": 60},
+            "dags": {"type": "layered_random", "layers": 3, "width": 3},
+            "config": {"interference": "csma_bianchi", "routing": "widest_path"},
+        },
+        "vary": {"scheduler": ["heft", "cpop", "round_robin"]},
+        "replicate": {"seeds": 3},
+    }
+}
+
+
+def results(**options):
+    with run_sweep(SWEEP, **options) as study:
+        rows = sorted(study, key=lambda row: (row["scheduler"], row["seed"]))
+    return [{name: value for name, value in row.items() if name != "wall_s"} for row in rows]
+
+
+def test_workers_and_pools_change_no_result():
+    serial = results(executor="serial")
+
+    assert len(serial) == 9
+    assert results(workers=1) == serial
+    assert results(workers=3) == serial
+
+
+OTHERS = os.environ.get("NCSIM_OTHER_PYTHONS", "").split()
+
+
+@pytest.mark.skipif(not OTHERS, reason="NCSIM_OTHER_PYTHONS lists no interpreters with ncsim")
+@pytest.mark.parametrize("python", OTHERS or [""])
+def test_other_python_versions_give_the_bytes_of_the_golden_trace(python):
+    done = subprocess.run([python, "-c", PRINT_TRACE], capture_output=True, check=True)
+
+    assert done.stdout == GOLDEN.read_bytes()
 
 
 if __name__ == "__main__":
