@@ -38,11 +38,11 @@ def _raise(*_, **__):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem):
-    test = pyfuncitem.nodeid.partition("[")[0]
+    names = pyfuncitem.nodeid, pyfuncitem.nodeid.partition("[")[0]
     arguments = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
     for function, named in json.loads(os.environ["BREAK"]):
-        if named == test and _is_noticed(function_of(function), pyfuncitem.obj, arguments):
-            NOTICED.append([function, test])
+        if named in names and _is_noticed(function_of(function), pyfuncitem.obj, arguments):
+            NOTICED.append([function, named])
     return True
 
 
