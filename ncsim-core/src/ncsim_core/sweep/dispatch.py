@@ -1,9 +1,9 @@
 """Keeps an executor busy with chunks of runs, and finds the run that breaks it.
 
 When workers die, every run that was in flight is a suspect. Suspects are done again one at a
-time. One whose worker dies twice while nothing else is in flight, or that used up its wall limit,
-is to blame: it becomes a failed row and the sweep goes on. Twice, since a worker may also be killed
-from outside.
+time. One whose worker dies three times while nothing else is in flight, or that used up its wall
+limit, is to blame: it becomes a failed row and the sweep goes on. Three times, since a worker may
+also be killed from outside.
 """
 
 import time
@@ -25,7 +25,7 @@ MAX_CHUNK: Final = 256
 CHUNKS_PER_WORKER: Final = 2
 START_s: Final = 120.0
 LOOK_EVERY_s: Final = 5.0
-STRIKES: Final = 2
+STRIKES: Final = 3
 """Workers that a run may take with it."""
 
 
