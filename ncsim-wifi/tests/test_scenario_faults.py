@@ -70,6 +70,11 @@ def test_a_wrong_option_is_told_at_its_place(options, told):
     assert told in message
 
 
+@pytest.mark.parametrize("rf", ["channel_width_mhz: 20.5", "wifi_standard: 3"])
+def test_a_value_of_the_wrong_type_that_is_no_choice_is_one_fault(rf):
+    assert faults(rf=rf).count("s.yaml:13:") == 1
+
+
 def test_a_node_without_position_is_told_with_what_it_is_needed_for():
     assert faults(a="").startswith(
         "s.yaml:4:9  network.nodes[0]: node 'a' needs a position: link model wifi derives the rate "

@@ -29,7 +29,7 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
         return [*_number_problems(config, CONFIG), *component_problems(config, registry)]
     problems: dict[tuple[Path, str], Problem] = {}
     findings = list(islice(_flat(_findings(document, schema)), MAX_FINDINGS))
-    for error in findings:
+    for error in _without_types_of_choices(findings):
         for problem in _problems_of(error, registry):
             problems.setdefault((problem.path, problem.message), problem)
     if len(findings) == MAX_FINDINGS:
@@ -139,6 +139,16 @@ def _component_problem(path: Path, kind: str, error: Finding, registry: Registry
     except PluginError as unknown:
         return Problem(path, str(unknown), shown(name))
     return Problem(path, error.message, shown(name))
+
+
+def _without_types_of_choices(findings: list[Finding]) -> list[Finding]:
+    """Leave out that a value has the wrong type where it is also told which ones there are."""
+    chosen = {tuple(each.absolute_path) for each in findings if each.validator == "enum"}
+    return [
+        each
+        for each in findings
+        if each.validator != "type" or tuple(each.absolute_path) not in chosen
+    ]
 
 
 def _without_echoes(problems: list[Problem]) -> list[Problem]:
