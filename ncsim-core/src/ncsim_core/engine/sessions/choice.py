@@ -1,7 +1,7 @@
 """Which session of the interference model a run works with; all give the same answers.
 
-Compiled kernels pay for themselves only in long runs, since starting the compiler takes most of a
-second: they are used from ``WORTH_KERNELS`` refreshes on, counted over the runs of a process.
+Compiled kernels pay for themselves only in long runs, since numba takes more than a second to
+start: they are used from ``WORTH_KERNELS`` refreshes on, counted over the runs of a process.
 """
 
 import os
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 MAX_LINKS_OF_ROWS: Final = 150
 """Above, arrays are faster than rows of Python numbers; see docs/performance.md."""
 
-WORTH_KERNELS: Final = 25_000
-"""Refreshes that save about as much time as it takes to start numba."""
+WORTH_KERNELS: Final = 80_000
+"""Refreshes that save, at some 20 us each, about as much time as it takes to start numba."""
 
 _LOADS: Final["WeakKeyDictionary[InterferenceTables, Loads]"] = WeakKeyDictionary()
 _refreshes_so_far = 0

@@ -1,7 +1,7 @@
 """The inner loops of ``KernelSession``, compiled if numba is there.
 
 Plain functions of arrays, so that they give the same numbers, bit for bit, when they are not
-compiled. Only to be imported when kernels are wanted: importing numba takes most of a second.
+compiled. Only to be imported when kernels are wanted: starting numba takes more than a second.
 """
 
 from collections.abc import Callable
