@@ -1,11 +1,15 @@
 """The default model and its incremental forms, against the paper's formulas taken literally."""
 
+import gc
 import pickle
 import random
+import weakref
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ncsim_core.context import ModelCache
 from ncsim_core.contracts.interference_model import PlainSession
 from ncsim_core.engine.sessions import array_session, loads
 from ncsim_core.engine.sessions.array_session import ArraySession
@@ -29,7 +33,8 @@ TOGGLES = st.lists(st.lists(st.integers(0, 13), min_size=1, max_size=4, unique=T
 
 
 def model_of(network, rf=None, **options):
-    return csma_bianchi(make_context(network, sections={"rf": rf or {}}), **options)
+    context = replace(make_context(network, sections={"rf": rf or {}}), cache=ModelCache())
+    return csma_bianchi(context, **options)
 
 
 @given(SCENES, st.sets(st.integers(0, 13)))
@@ -132,3 +137,15 @@ def test_a_model_survives_pickling_with_its_caches_warm():
     copy = pickle.loads(pickle.dumps(model))
 
     assert copy.factors([0, 1], [0, 1]).tolist() == model.factors([0, 1], [0, 1]).tolist()
+
+
+def test_what_sessions_keep_goes_with_the_model():
+    model = model_of(paper_grid(3))
+    for form in SESSIONS:
+        session_on(model, form).update([0, 1], [])
+    kept = [weakref.ref(loads_of(model.tables())), weakref.ref(model.tables())]
+
+    del model
+    gc.collect()
+
+    assert [each() for each in kept] == [None, None]

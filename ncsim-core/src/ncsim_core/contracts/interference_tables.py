@@ -8,8 +8,10 @@ whatever their order and history.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
+
+from typing_extensions import override
 
 from ncsim_core.errors import PluginError
 
@@ -71,6 +73,7 @@ class InterferenceTables:
         shares: By link and level, the factors by number of stations, that is by one more than
             the active links of the conflict set. Level 0 with one station has factor 1.
         hidden_factors: By link and level, what hidden interference alone explains, in [0, 1].
+        kept: What the engine has worked out from them, by name; goes when they go.
     """
 
     starts: "NDArray[np.int64]"
@@ -80,6 +83,11 @@ class InterferenceTables:
     limits: Sequence[tuple[int, ...]]
     shares: Sequence[Sequence[ShareRow]]
     hidden_factors: Sequence[Sequence[float]]
+    kept: dict[str, object] = field(default_factory=dict, init=False, repr=False)
+
+    @override
+    def __getstate__(self) -> dict[str, object]:
+        return {**vars(self), "kept": {}}
 
     @property
     def link_count(self) -> int:

@@ -9,7 +9,6 @@ import sys
 from functools import cache
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
-from weakref import WeakKeyDictionary
 
 from ncsim_core.contracts.interference_model import (
     InterferenceModel,
@@ -33,7 +32,6 @@ MAX_LINKS_OF_ROWS: Final = 150
 WORTH_KERNELS: Final = 80_000
 """Refreshes that save, at some 20 us each, about as much time as it takes to start numba."""
 
-_LOADS: Final["WeakKeyDictionary[InterferenceTables, Loads]"] = WeakKeyDictionary()
 _refreshes_so_far = 0
 
 
@@ -62,7 +60,7 @@ def check_tables(tables: object, link_count: int, who: ComponentIdentity) -> Non
     """
     if not isinstance(tables, InterferenceTables):
         raise PluginError(f"{who}: tables() gave {tables!r}")
-    if tables not in _LOADS:
+    if "loads" not in tables.kept:
         fault = asked(who, lambda: tables.fault(link_count))
         if fault is not None:
             raise PluginError(f"{who} has tables with {fault}")
@@ -107,11 +105,11 @@ def sessions_on(tables: InterferenceTables) -> list[InterferenceSession]:
 
 def loads_of(tables: InterferenceTables) -> "Loads":
     """Return what follows from tables alone, worked out once for all runs that share them."""
-    loads = _LOADS.get(tables)
-    if loads is None:
-        from ncsim_core.engine.sessions.loads import loads_from
+    from ncsim_core.engine.sessions.loads import Loads, loads_from
 
-        loads = _LOADS[tables] = loads_from(tables)
+    loads = tables.kept.get("loads")
+    if not isinstance(loads, Loads):
+        loads = tables.kept["loads"] = loads_from(tables)
     return loads
 
 

@@ -2,8 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Sequence
-from typing import Final
-from weakref import WeakKeyDictionary
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +16,6 @@ from ncsim_core.network import LinkIndex
 
 GREATEST = np.iinfo(np.int64).max
 
-_ARRAYS: Final[WeakKeyDictionary[Loads, tuple[list[ShareRow], kernel.Arrays]]] = WeakKeyDictionary()
-
 
 class KernelSession(TabledSession):
     """Keeps loads and factors of all links in arrays that the kernels change.
@@ -30,7 +27,7 @@ class KernelSession(TabledSession):
     def __init__(self, loads: Loads) -> None:
         super().__init__(loads)
         count = loads.tables.link_count
-        self._rows, self._arrays = _arrays_of(loads)
+        self._rows, self._arrays = _prepared(loads)
         self._progress = kernel.Progress(
             load=np.zeros(count, np.int64),
             factor=np.ones(count),
@@ -71,26 +68,33 @@ class KernelSession(TabledSession):
         return loads
 
 
-def _arrays_of(loads: Loads) -> tuple[list[ShareRow], kernel.Arrays]:
-    """Return the distinct rows of shares and all arrays, made once for all runs."""
-    if loads not in _ARRAYS:
-        tables = loads.tables
-        rows = list({id(row): row for rows in tables.shares for row in rows}.values())
-        _ARRAYS[loads] = (
-            rows,
-            kernel.Arrays(
-                starts=tables.starts,
-                affected=tables.links,
-                is_conflict=tables.is_conflict,
-                hidden_units=tables.hidden_units,
-                count_shift=loads.count_shift,
-                limits=_padded([(*each, GREATEST) for each in tables.limits]),
-                share_rows=_share_rows(tables, rows),
-                shares=np.full((len(rows), loads.most_contenders + 2), np.nan),
-                is_constant=np.array([row.is_constant for row in rows], np.bool_),
-            ),
-        )
-    return _ARRAYS[loads]
+class _Prepared(NamedTuple):
+    """Tables as the kernels want them, and the distinct rows of shares."""
+
+    rows: list[ShareRow]
+    arrays: kernel.Arrays
+
+
+def _prepared(loads: Loads) -> _Prepared:
+    """Return what is made once for all runs that share tables."""
+    tables = loads.tables
+    known = tables.kept.get("kernel")
+    if isinstance(known, _Prepared):
+        return known
+    rows = list({id(row): row for rows in tables.shares for row in rows}.values())
+    arrays = kernel.Arrays(
+        starts=tables.starts,
+        affected=tables.links,
+        is_conflict=tables.is_conflict,
+        hidden_units=tables.hidden_units,
+        count_shift=loads.count_shift,
+        limits=_padded([(*each, GREATEST) for each in tables.limits]),
+        share_rows=_share_rows(tables, rows),
+        shares=np.full((len(rows), loads.most_contenders + 2), np.nan),
+        is_constant=np.array([row.is_constant for row in rows], np.bool_),
+    )
+    tables.kept["kernel"] = prepared = _Prepared(rows, arrays)
+    return prepared
 
 
 def _share_rows(tables: InterferenceTables, rows: Sequence[ShareRow]) -> NDArray[np.int64]:
