@@ -142,6 +142,21 @@ def test_extending_a_study_reuses_what_is_there(tmp_path):
     assert len(many.rows) == 9
 
 
+@pytest.mark.parametrize("folder", ["study", None])
+def test_a_walk_that_was_left_half_way_is_finished_by_the_next(tmp_path, folder):
+    sweep = {"sweep": {"base": BASE, "replicate": {"seeds": 30}}}
+    place = None if folder is None else tmp_path / folder
+    with run_sweep(sweep, place, executor="serial") as results:
+        first = next(iter(results))
+        rows = results.table().to_dicts()
+        again = list(results)
+
+    assert first["seed"] == 1
+    assert [row["seed"] for row in rows] == list(range(1, 31))
+    assert None not in {row["status"] for row in rows}
+    assert len(again) == 30
+
+
 def test_shards_merge_into_the_whole(tmp_path):
     sweep = {"sweep": {"base": BASE, "replicate": {"seeds": 7}}}
     for number in (1, 2, 3):

@@ -62,7 +62,7 @@ class Dispatcher:
                 done, _ = wait(self._in_flight, LOOK_EVERY_s, FIRST_COMPLETED)
                 if not done:
                     self._look_after_executor()
-                for future in done:
+                for future in [each for each in self._in_flight if each in done]:
                     if future in self._in_flight:
                         yield from self._collected(future)
         finally:

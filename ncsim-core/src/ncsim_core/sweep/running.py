@@ -79,6 +79,7 @@ class SweepResults:
             ScenarioError: Results cannot be written.
             NcsimError: Workers do not start, or none is left.
         """
+        self._members, self._ready = {}, []  # an earlier walk may have been left half-way
         self._store.register(self.plan, self.total)
         request = ExecutorRequest(self._options.workers, self._options.address)
         items = self._items()
