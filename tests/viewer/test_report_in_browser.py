@@ -209,3 +209,19 @@ def test_a_table_says_what_it_leaves_out_and_its_csv_leaves_out_nothing(made_rep
 
     assert "The first 5000 of 7502 rows" in page.locator(".rows .note").inner_text()
     assert len(download.value.path().read_text().splitlines()) == 1 + 7502
+
+
+def test_the_map_is_enlarged_by_wheel_and_keys_and_keeps_that_in_its_address(page):
+    page.keyboard.press("3")
+    box = page.locator(".drawing").bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 150)
+    page.mouse.wheel(0, -100)
+    wait_for_address(page, "z=1.25")
+    page.keyboard.press("+")
+    wait_for_address(page, "z=2.5")
+    page.reload()
+    page.wait_for_selector("html[data-ready]")
+
+    assert page.evaluate("ncsimViewer.page.store.ui.map.scale") == 2.5
+    page.keyboard.press("0")
+    assert page.evaluate("ncsimViewer.page.store.ui.map") is None

@@ -142,6 +142,19 @@ def test_form_and_yaml_follow_each_other(form, until):
     until(form, "!document.querySelector('#yaml').value.includes('seed')")
 
 
+def test_what_is_being_typed_survives_an_answer_of_the_server(form, until):
+    form.get_by_label("seed").fill("77")  # typed, not yet left
+    form.evaluate(
+        "() => { const yaml = document.querySelector('#yaml'); yaml.value += '# later\\n';"
+        " yaml.dispatchEvent(new Event('input', {bubbles: true})); }"
+    )
+    form.wait_for_timeout(1500)
+
+    assert form.get_by_label("seed").input_value() == "77"
+    form.get_by_label("seed").press("Tab")
+    until(form, "document.querySelector('#yaml').value.includes('seed: 77')")
+
+
 def test_options_appear_with_the_component_that_has_them(form, until):
     form.get_by_label("link model").select_option("wifi")
     form.get_by_label("rate", exact=True).select_option("raw_phy")
@@ -219,12 +232,14 @@ def test_options_of_a_third_party_plugin_appear_with_no_change_to_the_page(
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, env=environment
     ) as process:
-        assert process.stdout is not None
-        page = open_page(process.stdout.readline().strip() + "#v=configure")
-        page.get_by_label("scheduler", exact=True).select_option("lookahead", timeout=20_000)
-        page.get_by_label("hop weight").fill("2.5")
-        page.get_by_label("hop weight").press("Tab")
-        until(page, "document.querySelector('#yaml').value.includes('hop_weight: 2.5')")
+        try:
+            assert process.stdout is not None
+            page = open_page(process.stdout.readline().strip() + "#v=configure")
+            page.get_by_label("scheduler", exact=True).select_option("lookahead", timeout=20_000)
+            page.get_by_label("hop weight").fill("2.5")
+            page.get_by_label("hop weight").press("Tab")
+            until(page, "document.querySelector('#yaml').value.includes('hop_weight: 2.5')")
 
-        assert "What each hop after the first adds" in page.locator(".options").inner_text()
-        process.terminate()
+            assert "What each hop after the first adds" in page.locator(".options").inner_text()
+        finally:
+            process.terminate()

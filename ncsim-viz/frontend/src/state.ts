@@ -15,6 +15,8 @@ export type LaneMode = (typeof LANE_MODES)[number];
 /** Columns, rows and measure of a heat map. */
 export type Heat = [string, string, string];
 
+export interface MapPart { scale: number; x: number; y: number }
+
 export interface Ui {
   view: ViewId;
   /** Event that has just happened; -1 before the first. */
@@ -29,6 +31,8 @@ export interface Ui {
   byLoad: boolean;
   /** Whether all lanes are pressed into the height of the screen. */
   fit: boolean;
+  /** How the map is enlarged, and what is in its middle as parts of its size; null shows all of it. */
+  map: MapPart | null;
   /** DAG number; -1 shows every DAG. */
   dag: number;
   /** Whether the binding chain is outlined. */
@@ -57,10 +61,12 @@ export interface Ui {
 }
 
 export const START: Ui = {
-  view: "overview", event: -1, time: 0, window: null, selection: null, lanes: "node", byLoad: false, fit: false,
+  view: "overview", event: -1, time: 0, window: null, selection: null, lanes: "node", byLoad: false, fit: false, map: null,
   dag: 0, chain: false, conflicts: true, load: false, asTable: false, theme: "auto", playing: false, loop: false,
   replaySeconds: 20, search: "", help: false, path: "", against: "", study: "", sheet: 0, heat: null,
 };
+
+export const MAX_SCALE = 40;
 
 const LETTERS: Record<SelectionKind, string> = { task: "t", transfer: "x", link: "l", node: "n", recalc: "r", row: "w" };
 const FLAGS = [["o", "byLoad"], ["f", "fit"], ["c", "chain"], ["r", "load"], ["a", "asTable"], ["y", "loop"]] as const;
@@ -75,6 +81,7 @@ export function hashOf(ui: Ui): string {
   if (ui.selection) parts.set("s", LETTERS[ui.selection.kind] + ui.selection.id);
   if (ui.lanes !== "node") parts.set("l", ui.lanes);
   if (ui.dag) parts.set("d", ui.dag < 0 ? "all" : String(ui.dag));
+  if (ui.map) parts.set("z", [ui.map.scale, ui.map.x, ui.map.y].map((each) => each.toFixed(3)).join("_"));
   if (!ui.conflicts) parts.set("x", "0");
   if (ui.theme !== "auto") parts.set("t", ui.theme);
   if (ui.replaySeconds !== START.replaySeconds) parts.set("n", String(ui.replaySeconds));
@@ -102,6 +109,7 @@ export function fromHash(hash: string): Partial<Ui> {
   const lanes = parts.get("l") as LaneMode;
   found.lanes = LANE_MODES.includes(lanes) ? lanes : START.lanes;
   found.dag = parts.get("d") === "all" ? -1 : (whole("d") ?? 0);
+  found.map = mapIn(parts.get("z") ?? "");
   found.conflicts = parts.get("x") !== "0";
   const theme = parts.get("t");
   if (theme === "light" || theme === "dark") found.theme = theme;
@@ -118,6 +126,12 @@ function selectionIn(text: string): Selection | null {
   const kinds = Object.keys(LETTERS) as SelectionKind[];
   const kind = found ? kinds.find((each) => LETTERS[each] === found[1]) : undefined;
   return found && kind ? { kind, id: Number(found[2]) } : null;
+}
+
+function mapIn(text: string): MapPart | null {
+  const [scale, x, y] = text.split("_").map(Number);
+  const isPart = [scale, x, y].every((each) => Number.isFinite(each)) && scale > 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1;
+  return isPart ? { scale: Math.min(scale, MAX_SCALE), x, y } : null;
 }
 
 function heatIn(text: string | null): Heat | null {

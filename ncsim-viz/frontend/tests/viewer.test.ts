@@ -126,7 +126,8 @@ test("a hostile name is harmless in SVG and in CSV", () => {
 });
 
 test("the state survives the address, and a broken address is left out", () => {
-  const ui = { ...START, view: "rates", event: 7, window: [5, 90], selection: { kind: "link", id: 3 }, chain: true } as typeof START;
+  const ui = { ...START, view: "rates", event: 7, window: [5, 90], selection: { kind: "link", id: 3 }, chain: true, map: { scale: 2.5, x: 0.125, y: -0.25 } } as typeof START;
   expect({ ...START, ...fromHash(hashOf(ui)), time: 0 }).toEqual(ui);
-  expect(fromHash("v=nothing&e=-3&w=9-1&s=q1").view).toBeUndefined();
+  const broken = fromHash("v=nothing&e=-3&w=9-1&s=q1&z=0.5_9_x&m=[1]");
+  expect([broken.view, broken.event, broken.window, broken.selection, broken.map, broken.heat]).toEqual([undefined, -1, null, null, null, null]);
 });

@@ -120,6 +120,20 @@ describe("replay", () => {
   });
 });
 
+test("what lies under the pointer stays there when the map is enlarged, and 1 shows all", () => {
+  const page = new Page(new Store(START), { run: small(), other: null, extras: {} });
+  const under = (x: number): number => { const { scale, x: middle } = page.store.ui.map ?? { scale: 1, x: 0 }; return x / scale + middle; };
+  page.zoomMap(2, 0.3, -0.2);
+  expect(under(0.3)).toBeCloseTo(0.3, 12);
+  page.zoomMap(1.7, -0.1, 0);
+  expect(page.store.ui.map?.scale).toBeCloseTo(3.4, 12);
+  const before = under(0.2);
+  page.panMap(page.store.ui.map as never, 0.1, 0);
+  expect(under(0.3)).toBeCloseTo(before, 12);
+  page.zoomMap(0.01);
+  expect(page.store.ui.map).toBeNull();
+});
+
 describe("selection", () => {
   const run = small();
 

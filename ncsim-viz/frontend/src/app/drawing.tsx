@@ -3,9 +3,10 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { timeOf, type Scale } from "../draw/axis";
 import { CanvasPainter } from "../draw/painter";
+import type { MapPart } from "../state";
 import { nameOf } from "../views/names";
 import type { Box, Context, View } from "../views/view";
-import type { Page } from "./page";
+import { WHOLE_MAP, type Page } from "./page";
 
 interface Size { width: number; height: number }
 type Layer = "draw" | "overlay";
@@ -53,7 +54,7 @@ function paint(element: HTMLCanvasElement, view: View, ctx: Context, box: Box, l
 function stillKey(ctx: Context, page: Page, view: View, box: Box): unknown[] {
   const { ui } = ctx;
   return [view.id, page.version, box.width, box.height, box.top, box.bottom, ui.window, ui.selection, ui.lanes, ui.byLoad,
-    ui.fit, ui.dag, ui.chain, ui.conflicts, ui.load, ui.sheet, ui.heat, ctx.colours, ctx.extras];
+    ui.fit, ui.map, ui.dag, ui.chain, ui.conflicts, ui.load, ui.sheet, ui.heat, ctx.colours, ctx.extras];
 }
 
 export function Drawing({ view, ctx, page }: { view: View; ctx: Context; page: Page }) {
@@ -76,9 +77,14 @@ export function Drawing({ view, ctx, page }: { view: View; ctx: Context; page: P
   });
   useWheel(moving, (event) => {
     const scale = view.scale?.(ctx, box);
+    const factor = event.deltaY > 0 ? 1.25 : 0.8;
+    if (view.isMap) {
+      event.preventDefault();
+      return page.zoomMap(1 / factor, event.offsetX / box.width - 0.5, event.offsetY / box.height - 0.5);
+    }
     if (!scale || (height > size.height && !event.ctrlKey && !event.altKey)) return;
     event.preventDefault();
-    page.zoom(event.deltaY > 0 ? 1.25 : 0.8, timeOf(scale, event.offsetX));
+    page.zoom(factor, timeOf(scale, event.offsetX));
   });
   const mouse = useMouse(view, ctx, page, box, setTip);
   return (
@@ -111,7 +117,7 @@ function useWheel(canvas: { current: HTMLCanvasElement | null }, wheel: (event: 
   }, []);
 }
 
-interface Drag { x: number; window: [number, number]; scale: Scale; isBrush: boolean; moved: boolean }
+interface Drag { x: number; y: number; window: [number, number]; map: MapPart; scale: Scale | null; isBrush: boolean; moved: boolean }
 
 /** Drag moves the window, shift and drag brushes one, a click selects, a still mouse asks. */
 function useMouse(view: View, ctx: Context, page: Page, box: Box, setTip: (tip: { x: number; y: number; text: string } | null) => void) {
@@ -122,18 +128,20 @@ function useMouse(view: View, ctx: Context, page: Page, box: Box, setTip: (tip: 
   };
   return {
     onPointerDown: (event: PointerEvent) => {
-      const scale = view.scale?.(ctx, box);
+      const scale = view.scale?.(ctx, box) ?? null;
       setTip(null);
-      if (!scale || event.button !== 0) return;
-      drag.current = { x: event.offsetX, window: ctx.window, scale, isBrush: event.shiftKey, moved: false };
+      if ((!scale && !view.isMap) || event.button !== 0) return;
+      drag.current = { x: event.offsetX, y: event.offsetY, window: ctx.window, map: ctx.ui.map ?? WHOLE_MAP, scale, isBrush: event.shiftKey && scale !== null, moved: false };
       (event.currentTarget as HTMLElement).setPointerCapture?.(event.pointerId);
     },
     onPointerMove: (event: PointerEvent) => {
       const held = drag.current;
       if (!held || !(event.buttons & 1)) return ask(event.offsetX, event.offsetY);
       const dx = event.offsetX - held.x;
-      if (Math.abs(dx) < CLICK_px && !held.moved) return;
+      const dy = event.offsetY - held.y;
+      if (Math.abs(dx) < CLICK_px && Math.abs(dy) < CLICK_px && !held.moved) return;
       held.moved = true;
+      if (!held.scale) return page.panMap(held.map, dx / box.width, dy / box.height);
       if (held.isBrush) return brush(page, held, event.offsetX);
       const [from, to] = held.window;
       page.pan(from, to, (-dx / (held.scale.right - held.scale.left)) * (to - from));
@@ -155,10 +163,11 @@ const hitName = (view: View, ctx: Context, box: Box, x: number, y: number): stri
 
 /** While brushing, the playhead follows, so that the far end is seen in words and numbers. */
 function brush(page: Page, held: Drag, x: number): void {
-  page.goToTime(timeOf(held.scale, x));
+  if (held.scale) page.goToTime(timeOf(held.scale, x));
 }
 
 function zoomToBrush(page: Page, held: Drag, x: number): void {
+  if (!held.scale) return;
   const ends = [timeOf(held.scale, held.x), timeOf(held.scale, x)].sort((a, b) => a - b);
   page.setWindow(ends[0], ends[1]);
 }

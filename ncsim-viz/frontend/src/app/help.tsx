@@ -12,7 +12,7 @@ export function Help({ close }: { close: () => void }) {
       <dl class="keys">{KEYS.map(([keys, words]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{words}</dd></div>)}</dl>
       <h2>Mouse</h2>
       <p>Click selects, here and in every view. Drag moves the window of time, shift and drag sets it, the wheel (with ctrl in long
-        drawings) zooms. The strip at the bottom is the whole run: drag in it to set the window, click to move the playhead.</p>
+        drawings) zooms; in Topology drag and wheel move and enlarge the map. The strip at the bottom is the whole run: drag in it to set the window, click to move the playhead.</p>
       <button ref={button} onClick={close}>Close (Esc)</button>
     </dialog>
   );

@@ -11,7 +11,7 @@ export const KEYS: [string, string][] = [
   ["← →", "one event back or on, by sequence"],
   ["shift ← →", "to another instant"],
   ["[ ]", "previous or next recalculation"],
-  ["+ − 0", "zoom in, out, whole run"],
+  ["+ − 0", "zoom in, out, whole run; in Topology the map"],
   ["< >", "move the window of time"],
   ["j k", "select the next or previous row of the view"],
   ["b", "window of time = the selection"],
@@ -34,10 +34,10 @@ export function actionOf(event: KeyboardEvent, page: Page, view: View, views: Vi
     ArrowLeft: () => step(-1),
     "[": () => page.stepRecalculation(-1),
     "]": () => page.stepRecalculation(1),
-    "+": () => page.zoom(0.5),
-    "=": () => page.zoom(0.5),
-    "-": () => page.zoom(2),
-    "0": () => store.set({ window: null }),
+    "+": () => zoom(page, view, 2),
+    "=": () => zoom(page, view, 2),
+    "-": () => zoom(page, view, 0.5),
+    "0": () => store.set(view.isMap ? { map: null } : { window: null }),
     "<": () => slide(page, -0.25),
     ">": () => slide(page, 0.25),
     j: () => nextRow(page, view, 1),
@@ -55,6 +55,9 @@ export function actionOf(event: KeyboardEvent, page: Page, view: View, views: Vi
   const wanted = views.find((each) => each.key === event.key);
   return wanted ? () => store.set({ view: wanted.id }) : actions[event.key];
 }
+
+/** Enlarge the map where there is one, else the window of time. */
+const zoom = (page: Page, view: View, factor: number): void => (view.isMap ? page.zoomMap(factor) : page.zoom(1 / factor));
 
 function slide(page: Page, share: number): void {
   const [from, to] = page.store.ui.window ?? [0, page.run.end];

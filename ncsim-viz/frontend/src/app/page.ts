@@ -5,7 +5,7 @@ import type { Extras } from "../data/extras";
 import { K, Run } from "../data/run";
 import { Lanes } from "../draw/lanes";
 import { paletteOf } from "../draw/palette";
-import type { LaneMode, Selection, Store, Ui } from "../state";
+import { MAX_SCALE, type LaneMode, type MapPart, type Selection, type Store, type Ui } from "../state";
 import { marksOf } from "../views/marks";
 import { exists } from "../views/names";
 import type { Context } from "../views/view";
@@ -18,6 +18,7 @@ export const isDark = (ui: Ui): boolean =>
   ui.theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : ui.theme === "dark";
 
 const LEAST_WINDOW_us = 10;
+export const WHOLE_MAP: MapPart = { scale: 1, x: 0, y: 0 };
 
 /** First event at which most transfers are in service: where a map has something to show. */
 export function busiest(run: Run): number {
@@ -128,6 +129,24 @@ export class Page {
     const [from, to] = this.store.ui.window ?? [0, this.end];
     const at = around ?? (from + to) / 2;
     this.setWindow(at - (at - from) * factor, at + (to - at) * factor);
+  }
+
+  /** Enlarge the map around a point, given as parts of its size from its middle. */
+  zoomMap(factor: number, x = 0, y = 0): void {
+    const now = this.store.ui.map ?? WHOLE_MAP;
+    const scale = Math.min(MAX_SCALE, now.scale * factor);
+    const gain = 1 / now.scale - 1 / scale;
+    this.setMap({ scale, x: now.x + x * gain, y: now.y + y * gain });
+  }
+
+  /** Move the map by parts of its size. */
+  panMap(from: MapPart, x: number, y: number): void {
+    this.setMap({ scale: from.scale, x: from.x - x / from.scale, y: from.y - y / from.scale });
+  }
+
+  private setMap({ scale, x, y }: MapPart): void {
+    const within = (each: number): number => Math.max(-0.5, Math.min(0.5, each));
+    this.store.set({ map: scale <= 1 ? null : { scale, x: within(x), y: within(y) } });
   }
 
   pan(from: number, to: number, shift: number): void {

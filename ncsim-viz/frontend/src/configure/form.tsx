@@ -1,6 +1,7 @@
 /** A form from a JSON Schema and a document: what a plug-in registers appears without a change here. */
 
 import type { Fault, Schema } from "../server/api";
+import { DraftArea, DraftInput } from "./draft";
 import {
   columnsOf, describe, emptyMeans, isRequired, namesOf, objectForm, optionsOf, pointerOf, propertiesOf, resolved, shapeOf, textOf, valueOf, withValue,
 } from "./schema";
@@ -136,8 +137,7 @@ function Input(props: FieldProps) {
   const isNumber = shapeOf(schema, props.root) === "number";
   return (
     <Labelled props={props}>{(_, marks) => (
-      <input {...marks} value={textOf(value)} placeholder={emptyMeans(schema)} inputMode={isNumber ? "decimal" : undefined}
-        onChange={(event) => change(path, valueOf(event.currentTarget.value, schema))} />
+      <DraftInput marks={marks} value={textOf(value)} placeholder={emptyMeans(schema)} isNumber={isNumber} commit={(text) => change(path, valueOf(text, schema))} />
     )}</Labelled>
   );
 }
@@ -171,7 +171,7 @@ function Raw(props: FieldProps) {
   };
   return (
     <Labelled props={props}>{(_, marks) => (
-      <textarea {...marks} rows={2} placeholder="JSON" value={value === undefined ? "" : JSON.stringify(value)} onChange={(event) => change(path, read(event.currentTarget.value))} />
+      <DraftArea marks={marks} placeholder="JSON" value={value === undefined ? "" : JSON.stringify(value)} commit={(text) => change(path, read(text))} />
     )}</Labelled>
   );
 }

@@ -2,6 +2,7 @@
 
 import { useMemo, useState } from "preact/hooks";
 import type { Fault, Schema } from "../server/api";
+import { DraftInput } from "./draft";
 import { describe, emptyMeans, pointerOf, textOf, valueAt, valueOf, withValue, type Column } from "./schema";
 
 /** Rows of a table that are on the page at a time. */
@@ -108,7 +109,7 @@ interface CellProps {
 
 function Cell({ column, value, label, pointer, fault, change, paste }: CellProps) {
   const { schema } = column;
-  const marks = { "aria-label": label, "data-pointer": pointer, "aria-invalid": fault ? ("true" as const) : undefined, title: fault?.message ?? describe(schema) };
+  const marks: Record<string, string | undefined> = { "aria-label": label, "data-pointer": pointer, "aria-invalid": fault ? "true" : undefined, title: fault?.message ?? describe(schema) };
   const error = fault && <span class="fault">{fault.message}</span>;
   const names = choicesOf(schema);
   if (names) {
@@ -123,8 +124,8 @@ function Cell({ column, value, label, pointer, fault, change, paste }: CellProps
   }
   return (
     <>
-      <input {...marks} value={textOf(value)} placeholder={emptyMeans(schema)} size={Math.max(6, Math.min(18, textOf(value).length + 1))} onPaste={paste}
-        onChange={(event) => change(valueOf(event.currentTarget.value, schema))} />{error}
+      <DraftInput marks={marks} value={textOf(value)} placeholder={emptyMeans(schema)} size={Math.max(6, Math.min(18, textOf(value).length + 1))} paste={paste}
+        commit={(text) => change(valueOf(text, schema))} />{error}
     </>
   );
 }

@@ -77,10 +77,14 @@ export class Service {
     const { entries } = await this.api.entries();
     if (wanted !== this.shown) return;
     if (entries.some((each) => each.id === path && each.is_live)) return this.openLive(path, study);
-    const [run, extras, other] = await Promise.all([
-      this.api.trace(path).then(loadRun), this.api.extras(path, against), against ? this.api.trace(against).then(loadRun) : null,
-    ]);
-    if (wanted === this.shown) this.page.open({ run, other, extras: { ...extras, ...(study ? { study } : {}) } });
+    const more = study ? { study } : {};
+    const asked = this.api.extras(path, against);
+    asked.catch(() => {}); // told below
+    const [run, other] = await Promise.all([this.api.trace(path).then(loadRun), against ? this.api.trace(against).then(loadRun) : null]);
+    if (wanted !== this.shown) return;
+    this.page.open({ run, other, extras: more }); // a large run is seen before all its numbers are there
+    const extras = await asked;
+    if (wanted === this.shown) this.page.open({ run, other, extras: { ...extras, ...more } });
   }
 
   private openLive(path: string, study: Study | null): void {

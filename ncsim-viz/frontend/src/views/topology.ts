@@ -14,10 +14,20 @@ const CROWDED = 60;
 /** Shorter links have no room for a label. */
 const LABELLED_px = 70;
 
-const radiusOf = (ctx: Context): number => (ctx.run.nodes.length > CROWDED ? 7 : RADIUS);
+/** Whether nodes are too many for their names, at the scale of the map. */
+const isCrowded = (ctx: Context): boolean => ctx.run.nodes.length / (ctx.ui.map?.scale ?? 1) ** 2 > CROWDED;
+const radiusOf = (ctx: Context): number => (isCrowded(ctx) ? 7 : RADIUS);
 
 export function placesOf(ctx: Context, box: Box): Place[] {
-  return ctx.memo(`places ${box.width} ${box.height}`, [], () => makePlaces(ctx, box));
+  const { map } = ctx.ui;
+  return ctx.memo(`places ${box.width} ${box.height}`, [map], () => {
+    const all = makePlaces(ctx, box);
+    if (!map) return all;
+    const [middleX, middleY] = [box.width / 2, box.height / 2];
+    return all.map(({ x, y }) => ({
+      x: middleX + (x - middleX - map.x * box.width) * map.scale, y: middleY + (y - middleY - map.y * box.height) * map.scale,
+    }));
+  });
 }
 
 function makePlaces(ctx: Context, box: Box): Place[] {
@@ -81,14 +91,14 @@ function draw(p: Painter, ctx: Context, box: Box): void {
     const { x, y } = places[i];
     const isMarked = ctx.marks.nodes.has(i);
     p.circle(x, y, radiusOf(ctx), { fill: colours.panel, stroke: isMarked ? colours.select : colours.muted, width: isMarked ? 3 : 1 });
-    if (run.nodes.length <= CROWDED || isMarked) nodeName(p, ctx, node.id, places[i], colours.ink);
+    if (!isCrowded(ctx) || isMarked) nodeName(p, ctx, node.id, places[i], colours.ink);
   });
   legend(p, ctx, box);
 }
 
 function nodeName(p: Painter, ctx: Context, id: string, { x, y }: Place, fill: string): void {
   const name = fitted(id, 2 * RADIUS - 4, 10);
-  if (name && ctx.run.nodes.length <= CROWDED) p.text(x, y, name, { fill, size: 10, anchor: "middle", bold: true });
+  if (name && !isCrowded(ctx)) p.text(x, y, name, { fill, size: 10, anchor: "middle", bold: true });
   else p.text(x, y - radiusOf(ctx) - 7, id, { fill: ctx.colours.ink, size: 10, anchor: "middle", halo: ctx.colours.paper });
 }
 
@@ -101,7 +111,7 @@ function paintLoads(p: Painter, ctx: Context, places: Place[]): void {
     p.line(points, { stroke: colours.accent, width: 2 + (8 * MB[i]) / most });
     arrow(p, points, colours.accent);
   });
-  if (run.links.length > 4 * CROWDED) return;
+  if (isCrowded(ctx)) return;
   run.links.forEach((_, i) => {
     if (MB[i] <= 0) return;
     const points = segment(ctx, places, i);
@@ -133,7 +143,7 @@ function paintRates(p: Painter, ctx: Context, places: Place[]): void {
     const stroke = isPaused ? colours.bad : colours.accent;
     p.line(points, { stroke, width: isPaused ? 2 : 2 + 7 * share, dash: isPaused ? [2, 4] : [] });
     arrow(p, points, stroke);
-    if (ctx.run.nodes.length > CROWDED || Math.hypot(points[2] - points[0], points[3] - points[1]) < LABELLED_px) continue;
+    if (isCrowded(ctx) || Math.hypot(points[2] - points[0], points[3] - points[1]) < LABELLED_px) continue;
     beside(p, ctx, points, isPaused ? "paused" : `${number(rate, 2)} MB/s${flows > 1 ? ` (${flows})` : ""}`, 2 + 4 * share);
   }
 }
@@ -146,7 +156,7 @@ function paintNode(p: Painter, ctx: Context, id: string, i: number, { x, y }: Pl
   if (task >= 0) {
     const shade = run.tkDag.data[task] % 8;
     p.circle(x, y, radius, { fill: colours.categories[shade], stroke: isMarked ? colours.select : colours.ink, width: isMarked ? 3 : 1.5 });
-    if (run.nodes.length <= CROWDED) {
+    if (!isCrowded(ctx)) {
       nodeName(p, ctx, id, { x, y }, colours.onCategory[shade]);
       p.text(x, y + radius + 10, `▶ ${run.taskName(task)}`, { fill: colours.ink, size: 11, anchor: "middle", halo: colours.paper });
     }
@@ -256,6 +266,7 @@ export const topology: View = {
   summary: (ctx) => `Map of ${count(ctx.run.nodes.length, "node")} and ${count(ctx.run.links.length, "link")}; ${count(ctx.cursor.active.length, "transfer")} in service now`,
   draw,
   overlay,
+  isMap: true,
   hit(ctx, box, x, y) {
     const places = placesOf(ctx, box);
     const node = places.findIndex((each) => Math.hypot(each.x - x, each.y - y) <= radiusOf(ctx));

@@ -71,6 +71,8 @@ export interface View {
   hit?(ctx: Context, box: Box, x: number, y: number): Selection | null;
   /** More to say about a point than the name of what lies there. */
   tip?(ctx: Context, box: Box, x: number, y: number): string;
+  /** Whether wheel, drag and + − 0 enlarge and move the drawing itself. */
+  isMap?: boolean;
   /** The time axis of the drawing, if it has one: what wheel and drag move. */
   scale?(ctx: Context, box: Box): Scale;
 }
