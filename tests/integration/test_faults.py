@@ -112,6 +112,20 @@ def test_a_plugin_that_eats_memory_is_stopped_and_named(method, scenario, tmp_pa
     assert "raised MemoryError" in done.stdout + done.stderr
 
 
+def test_a_sweep_goes_on_after_a_run_that_eats_memory(tmp_path):
+    text = sweep_of(tmp_path).read_text(encoding="utf-8").replace("seeds: 50", "seeds: 2")
+    path = tmp_path / "limited.yaml"
+    path.write_text(f"{text}  limits: {{memory_MB: 200}}\n", encoding="utf-8")
+    method, study = "schedulers:RoundRobinScheduler:schedule", tmp_path / "study"
+    verb = ["sweep", path, "-o", study, "--executor", "serial"]
+
+    done = planted(method, "hungry", tmp_path, *verb)
+
+    expect_no_traceback(done)
+    assert done.returncode == 2
+    assert "2 failed" in done.stdout + done.stderr
+
+
 def test_what_was_done_until_the_clock_stopped_it_is_kept(scenario, tmp_path):
     method, out = "queue_models:FifoQueue:pop", tmp_path / "out"
 

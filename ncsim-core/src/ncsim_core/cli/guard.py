@@ -5,7 +5,6 @@ interrupted a moment later, where the system has alarms, and the run says where 
 """
 
 import contextlib
-import importlib
 import signal
 import time
 import traceback
@@ -13,14 +12,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Any, Final
+from typing import Final
 
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.errors import PluginError
+from ncsim_core.memory import limited_memory
 
 GRACE_s: Final = 1.0
 """What a call that does not return gets beyond the limit."""
-BYTES_PER_MB: Final = 1_000_000
 
 
 class StuckError(BaseException):
@@ -47,7 +46,7 @@ class Guard:
             PluginError: A component did not return while the run was being built.
         """
         deadline_s = time.monotonic() + (float("inf") if self.wall_s is None else self.wall_s)
-        with _limited_memory(self.memory_MB), _alarm(self.wall_s):
+        with limited_memory(self.memory_MB), _alarm(self.wall_s):
             try:
                 yield deadline_s
             except StuckError as stuck:
@@ -94,23 +93,3 @@ def _alarm(wall_s: float | None) -> Iterator[None]:
 def _interrupt(number: int, frame: FrameType | None) -> None:
     del number, frame
     raise StuckError
-
-
-@contextlib.contextmanager
-def _limited_memory(memory_MB: float | None) -> Iterator[None]:
-    """Let allocations fail once the program has grown by so much."""
-    if memory_MB is None:
-        yield
-        return
-    try:
-        resource: Any = importlib.import_module("resource")
-        pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
-    except (ImportError, OSError):
-        raise PluginError("a limit on memory needs Linux") from None
-    before = resource.getrlimit(resource.RLIMIT_AS)
-    most = pages * resource.getpagesize() + round(memory_MB * BYTES_PER_MB)
-    resource.setrlimit(resource.RLIMIT_AS, (most, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, before)

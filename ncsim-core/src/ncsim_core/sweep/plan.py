@@ -43,11 +43,13 @@ class RunLimits:
         wall_s: Time on the clock. A worker that does not even answer is stopped.
         max_events: Events.
         max_time_s: Simulated time.
+        memory_MB: What the run may take beyond what its worker has.
     """
 
     wall_s: float | None = None
     max_events: int | None = None
     max_time_s: float | None = None
+    memory_MB: float | None = None
 
 
 @dataclass(frozen=True)

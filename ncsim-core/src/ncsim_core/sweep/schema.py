@@ -171,6 +171,7 @@ def _limits() -> Schema:
             "wall_s": {"type": "number", "exclusiveMinimum": 0, "description": "Clock time, s."},
             "max_events": {"type": "integer", "minimum": 0, "description": "Events."},
             "max_time_s": {"type": "number", "minimum": 0, "description": "Simulated time, s."},
+            "memory_MB": {"type": "number", "exclusiveMinimum": 0, "description": "Memory, MB."},
         },
         "When to give up on one run.",
     )

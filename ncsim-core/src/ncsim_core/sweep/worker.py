@@ -16,6 +16,7 @@ from ncsim_core.engine.outcome import Outcome, RunStatus
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.errors import NcsimError
+from ncsim_core.memory import limited_memory
 from ncsim_core.scenario.assembly import assemble
 from ncsim_core.sweep.axes import Run
 from ncsim_core.sweep.plan import RunLimits, plan_from_json
@@ -110,7 +111,8 @@ def _result(item: Item, resolver: Resolver) -> ResultRow:
     limits = resolver.plan.limits
     _set_alarm(limits)
     try:
-        return _simulated(item, resolver, limits, started_s)
+        with limited_memory(limits.memory_MB):
+            return _simulated(item, resolver, limits, started_s)
     except NcsimError as error:
         return failed_row(item.key, str(error), time.perf_counter() - started_s)
     except (Exception, SystemExit) as error:  # a plug-in may do anything; the sweep goes on
