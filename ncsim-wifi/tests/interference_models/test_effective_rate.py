@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ncsim_core.context import ModelCache
 from ncsim_core.contracts.interference_model import PlainSession
-from ncsim_core.engine.sessions import array_session, loads
+from ncsim_core.engine.sessions import array_session, loads, tabled_session
 from ncsim_core.engine.sessions.array_session import ArraySession
 from ncsim_core.engine.sessions.choice import loads_of, session_for
 from ncsim_core.engine.sessions.kernel_session import KernelSession
@@ -137,6 +137,13 @@ def test_a_model_survives_pickling_with_its_caches_warm():
     copy = pickle.loads(pickle.dumps(model))
 
     assert copy.factors([0, 1], [0, 1]).tolist() == model.factors([0, 1], [0, 1]).tolist()
+
+
+def test_competition_is_right_after_any_number_of_switches_that_nobody_asked_about(monkeypatch):
+    monkeypatch.setattr(tabled_session, "MAX_TOGGLED", 5)
+    draw = random.Random(7)
+
+    follow(model_of(paper_grid(3)), [draw.sample(range(24), 4) for _ in range(30)], "rows")
 
 
 def test_what_sessions_keep_goes_with_the_model():

@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from bisect import bisect_left
 from collections.abc import Sequence
+from typing import Final
 
 from typing_extensions import override
 
@@ -14,6 +15,8 @@ from ncsim_core.contracts.interference_model import (
 from ncsim_core.engine.sessions.loads import Loads
 from ncsim_core.network import LinkIndex
 
+MAX_TOGGLED: Final = 10_000
+
 
 class TabledSession(InterferenceSession):
     """A session on tables.
@@ -24,21 +27,29 @@ class TabledSession(InterferenceSession):
 
     def __init__(self, loads: Loads) -> None:
         self._loads = loads
-        self._active_mask = 0
+        self._active_mask = 0  # as of the last time that anybody asked
+        self._toggled: list[LinkIndex] = []  # since then
 
     @abstractmethod
     def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
         """Return the loads of active links."""
 
     def _toggle(self, links: Sequence[LinkIndex]) -> None:
-        """Note that links have been switched."""
+        """Note that links have been switched, for the case that somebody asks about competition."""
+        self._toggled += links
+        if len(self._toggled) > MAX_TOGGLED:
+            self._bring_mask_up_to_date()
+
+    def _bring_mask_up_to_date(self) -> None:
         mask = self._active_mask
-        for link in links:
+        for link in self._toggled:
             mask ^= 1 << link
         self._active_mask = mask
+        self._toggled.clear()
 
     @override
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
+        self._bring_mask_up_to_date()
         loads, tables, active_mask = self._loads, self._loads.tables, self._active_mask
         count_shift, units_mask = loads.count_shift, loads.units_mask
         told = []
