@@ -3,6 +3,7 @@
 import { number, seconds } from "../draw/format";
 import { nowText } from "../views/names";
 import type { Context } from "../views/view";
+import { DraftInput } from "./draft";
 import type { Page } from "./page";
 import { play, wantsLessMotion } from "./replay";
 import { Strip } from "./strip";
@@ -21,8 +22,8 @@ export function Playbar({ ctx, page }: { ctx: Context; page: Page }) {
         <button onClick={() => page.goTo(ui.event + 1)} aria-label="One event on">▶</button>
         <input type="range" aria-label="Playhead, by event" aria-valuetext={nowText(ctx)} min={-1} max={run.events - 1} value={ui.event}
           onInput={(event) => page.goTo(Number(event.currentTarget.value))} />
-        <label>whole run in <input type="number" min={1} max={3600} value={ui.replaySeconds}
-          onChange={(event) => set({ replaySeconds: Math.max(1, Math.min(3600, Number(event.currentTarget.value) || 20)) })} /> s</label>
+        <label>whole run in <DraftInput marks={{ type: "number", min: "1", max: "3600" }} placeholder="" value={String(ui.replaySeconds)}
+          commit={(text) => set({ replaySeconds: Math.max(1, Math.min(3600, Number(text) || 20)) })} /> s</label>
         <span class="muted" title="seconds of the run per second of the replay">{speedOf(run.end, ui.replaySeconds)}</span>
         <label title="play the window again and again"><input type="checkbox" checked={ui.loop} onChange={() => set({ loop: !ui.loop })} /> loop (l)</label>
         {ui.window && <button onClick={() => set({ window: null })} title={`${seconds(ui.window[0])} to ${seconds(ui.window[1])} s`}>Whole run (0)</button>}

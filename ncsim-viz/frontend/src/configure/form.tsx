@@ -1,7 +1,7 @@
 /** A form from a JSON Schema and a document: what a plug-in registers appears without a change here. */
 
+import { DraftArea, DraftInput } from "../app/draft";
 import type { Fault, Schema } from "../server/api";
-import { DraftArea, DraftInput } from "./draft";
 import {
   columnsOf, describe, emptyMeans, isRequired, namesOf, objectForm, optionsOf, pointerOf, propertiesOf, resolved, shapeOf, textOf, valueOf, withValue,
 } from "./schema";

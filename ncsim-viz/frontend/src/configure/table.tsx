@@ -1,8 +1,8 @@
 /** A list of like objects as a table: editable, and pasteable from a spreadsheet. */
 
 import { useMemo, useState } from "preact/hooks";
+import { DraftInput } from "../app/draft";
 import type { Fault, Schema } from "../server/api";
-import { DraftInput } from "./draft";
 import { describe, emptyMeans, pointerOf, textOf, valueAt, valueOf, withValue, type Column } from "./schema";
 
 /** Rows of a table that are on the page at a time. */
