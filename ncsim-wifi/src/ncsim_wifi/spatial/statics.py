@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ncsim_wifi.mac.timing import RTS_us
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations, deaf_to_ack
 from ncsim_wifi.spatial.artefacts import LostFields, lost_fields
@@ -27,6 +28,8 @@ from ncsim_wifi.spatial.relations import (
     hostile_relations,
 )
 from ncsim_wifi.spatial.scene import Scene
+
+LETHAL_BURST = 0.5  # an RTS that kills the data that it meets; hardly ever in between
 
 
 @dataclass(frozen=True)
@@ -122,7 +125,9 @@ def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
     hears_cts = scene.hears_receiver[link, hostile.station]
     whole_us = scene.on_air_us[link]
     window_us = np.where(hostile.is_strong, whole_us, window_us)
-    return np.where(hears_cts | hostile.by_cts_only, CTS_NOTICED_us, window_us)
+    burst_kill = -np.expm1(-hostile.delta[:, 0] * RTS_us / scene.protected_us[link])
+    by_cts_only = hostile.by_cts_only & (burst_kill < LETHAL_BURST)
+    return np.where(hears_cts | by_cts_only, CTS_NOTICED_us, window_us)
 
 
 def _hears_cts_of(scene: Scene, own: IntArray, other: IntArray) -> BoolArray:
