@@ -5,8 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
 SOURCES = sorted(path for path in ROOT.glob("ncsim-*/src/**/*.py"))
 NETWORK = {"socket", "ssl", "http", "urllib", "requests", "ftplib", "smtplib", "asyncio", "httpx"}
@@ -139,30 +137,25 @@ sweep:
 """
 
 
-@pytest.fixture(scope="module")
-def workplace(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("offline")
-    (folder / "sweep.yaml").write_text(SWEEP, encoding="utf-8")
-    return folder
-
-
-@pytest.mark.parametrize(
-    "verb",
-    [
-        "run {root}/examples/two_hop.yaml -o {here}/out",
-        "sweep {here}/sweep.yaml -o {here}/study --executor serial",
-        "report {here}/study",
-        "explain {here}/out",
-        "view {here}/out --output {here}/page.html",
-        "doctor",
-    ],
-    ids=lambda verb: verb.split()[0],
+VERBS = (  # each takes what those before it left
+    "run {root}/examples/two_hop.yaml -o {here}/out",
+    "sweep {here}/sweep.yaml -o {here}/study --executor serial",
+    "report {here}/study",
+    "explain {here}/out",
+    "view {here}/out --output {here}/page.html",
+    "doctor",
 )
-def test_verbs_open_no_socket(verb, workplace):
-    words = verb.format(root=ROOT, here=workplace).split()
 
-    done = subprocess.run(
-        [sys.executable, "-c", WITHOUT_SOCKETS, *words], capture_output=True, text=True, check=False
-    )
 
-    assert done.returncode == 0, done.stderr
+def test_verbs_open_no_socket(tmp_path):
+    (tmp_path / "sweep.yaml").write_text(SWEEP, encoding="utf-8")
+    for verb in VERBS:
+        words = verb.format(root=ROOT, here=tmp_path).split()
+        done = subprocess.run(
+            [sys.executable, "-c", WITHOUT_SOCKETS, *words],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+        assert done.returncode == 0, (verb, done.stderr)
