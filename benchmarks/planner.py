@@ -112,7 +112,7 @@ def timed(make: Callable[[], T], repeats: int = 1) -> tuple[T, float]:
 
 def native_plan(name: str, dag: DAG, network: PlanningNetwork) -> list[int]:
     """Return the node of every task, in file order, the DAG read anew."""
-    instance = instance_of(dag)
+    instance = instance_of.__wrapped__(dag)  # not the one that is remembered
     processors = processors_for(network, min(instance.costs))
     return [network.nodes[position] for position in ALGORITHMS[name](instance, processors)]
 

@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias
 
 from ncsim_core.workflow import DAG
 
 from ncsim_saga.hash_order import name_hash, pair_hash, walking_order
+
+MAX_REMEMBERED_DAGS = 8
 
 Neighbours: TypeAlias = tuple[tuple[int, float], ...]
 """Tasks on the other end of a dependency, with its size in MB."""
@@ -33,8 +36,9 @@ class Instance:
     topological: tuple[int, ...]
 
 
+@lru_cache(maxsize=MAX_REMEMBERED_DAGS)
 def instance_of(dag: DAG) -> Instance:
-    """Return a DAG as the native planners read it."""
+    """Return a DAG as the native planners read it; the runs of a study ask for the same few."""
     names = tuple(task.id for task in dag.tasks)
     parents: list[list[tuple[int, float]]] = [[] for _ in names]
     children: list[list[tuple[int, float]]] = [[] for _ in names]
