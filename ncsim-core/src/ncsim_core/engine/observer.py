@@ -41,8 +41,9 @@ class RateChange(NamedTuple):
     competition: Competition
 
 
+rate_cause_of: Final = partial(tuple.__new__, RateCause)
 rate_change_of: Final = partial(tuple.__new__, RateChange)
-"""Makes a ``RateChange`` of a tuple of its fields, in a third of the time of naming them."""
+"""Make a ``RateCause`` or ``RateChange`` of a tuple, in a third of the time of naming fields."""
 
 
 class Observer:

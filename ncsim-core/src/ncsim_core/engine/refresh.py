@@ -12,7 +12,7 @@ from typing import TypeAlias
 from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Switched
-from ncsim_core.engine.observer import RateCause, rate_change_of
+from ncsim_core.engine.observer import rate_cause_of, rate_change_of
 from ncsim_core.engine.route_rates import moves_by_route
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -99,7 +99,7 @@ def reschedule_completions(moves: Iterable[Move], state: State) -> None:
 
 def report_rates(transfer: Transfer, change: Change, moves: Sequence[Move], state: State) -> None:
     """Show the new rates and what explains them to whoever watches."""
-    cause = RateCause("start" if change is occupy else "finish", transfer.number)
+    cause = rate_cause_of(("start" if change is occupy else "finish", transfer.number))
     flows_on = state.links.flows
     against = competition_on([bottleneck for _, _, _, bottleneck in moves], state)
     changes = [
