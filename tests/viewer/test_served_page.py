@@ -213,6 +213,23 @@ def test_a_preset_is_made_run_and_opened(form, until):
     assert form.evaluate("ncsimViewer.run.status") == "completed"
 
 
+def test_runs_that_go_on_or_wait_are_cancelled_from_the_page(form, served, tmp_path, monkeypatch):
+    (tmp_path / "endless.py").write_text("import time\n\ndef run():\n    time.sleep(60)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setattr("ncsim_viz.server.jobs.ENTRY", "endless:run")
+    for name in ("goes-on", "waits"):
+        form.get_by_label("Run name").fill(name)
+        form.get_by_role("button", name="Run", exact=True).click()
+        form.get_by_role("row", name=re.compile(f"{name} (running|queued)")).wait_for()
+    for name in ("waits", "goes-on"):
+        row = form.get_by_role("row", name=re.compile(f"^{name} "))
+        row.get_by_role("button", name="Cancel").click()
+        form.get_by_role("row", name=re.compile(f"{name} cancelled")).wait_for()
+
+    assert form.get_by_role("button", name="Cancel").count() == 0
+    assert {each.name for each in served.site.library.root.iterdir()} == {"full", "solo"}
+
+
 def test_options_of_a_third_party_plugin_appear_with_no_change_to_the_page(
     tmp_path, open_page, until
 ):
