@@ -194,7 +194,7 @@ class CsmaSpatialRoutesModel(CsmaSpatialModel):
 
     Transfers that cannot influence each other are solved apart, and every set only once.
 
-    Source: docs/csma-spatial.md; docs/decisions/0002-route-rates.md.
+    Source: docs/csma-spatial.md; docs/decisions/0001-route-rates.md.
 
     Args:
         context: Network.

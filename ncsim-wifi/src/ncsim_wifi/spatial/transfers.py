@@ -6,7 +6,7 @@ receives, and for each transfer one hop is always busy. Only the ratio of the ra
 without the others is taken from it, so that both limits are exact: one transfer alone, and
 transfers of one hop each, which are saturated.
 
-Source: MODEL 5; docs/decisions/0002-route-rates.md.
+Source: MODEL 5; docs/decisions/0001-route-rates.md.
 """
 
 from collections.abc import Mapping, Sequence
