@@ -76,3 +76,9 @@ def test_nothing_is_replaced(host, capsys):
     assert "exists already" in capsys.readouterr().err
     assert ncsim("import", FILM, "--keep") == 1
     assert "--keep needs --into" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", [["--at", "inf"], ["--at", "nan"], ["--speed", "nan"]])
+def test_times_and_speeds_must_be_finite(option, capsys):
+    assert ncsim("import", FILM, *option) == 1
+    assert "must be " in capsys.readouterr().err

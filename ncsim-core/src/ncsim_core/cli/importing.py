@@ -1,5 +1,6 @@
 """``ncsim import``: workflows of other tools."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -50,6 +51,8 @@ def import_workflow(  # noqa: PLR0913 - one parameter per option
 
     if output is not None and output.exists():
         raise ScenarioError(f"{output}: exists already; choose another name")
+    if not math.isfinite(at):
+        raise ScenarioError(f"--at {at}: must be a finite number of seconds")
     found = read_workflow(workflow, units_per_s=speed, dag_id=dag_id)
     document = _document(Injection(us_from_s(at), found.dag), into, keep=keep)
     _write(document, output)
