@@ -154,7 +154,7 @@ def _making_problems(run: Run, resolver: Resolver, registry: Registry) -> Iterat
         except NcsimError as error:
             yield Problem(path, str(error))
             return
-        except (KeyError, TypeError, ValueError) as error:
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             yield Problem(path, f"these rows are no scenario: {error!r}")
             return
 

@@ -22,7 +22,7 @@ def extent_problems(axes: Sequence[Axis], rows: Mapping[str, Any]) -> Iterator[P
     if levels > MAX_LEVELS:
         yield Problem(SWEEP, f"has {levels} values to vary; {MAX_LEVELS} are allowed")
     given = rows.get("replicate", {}).get("seeds", 1)
-    seeds = given if isinstance(given, int) else len(given)
+    seeds = len(given) if isinstance(given, list | tuple) else int(given)
     if seeds > MAX_SEEDS:
         place = (*SWEEP, "replicate", "seeds")
         yield Problem(place, f"more than {MAX_SEEDS} seeds are not allowed", shown(given))

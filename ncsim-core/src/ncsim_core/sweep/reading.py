@@ -220,7 +220,9 @@ def _texts(where: str | list[str]) -> list[str]:
 
 
 def _seeds(seeds: int | list[int]) -> tuple[int, ...]:
-    return tuple(range(1, seeds + 1)) if isinstance(seeds, int) else tuple(dict.fromkeys(seeds))
+    if isinstance(seeds, list):
+        return tuple(dict.fromkeys(map(int, seeds)))
+    return tuple(range(1, int(seeds) + 1))
 
 
 def _pair(pair: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
