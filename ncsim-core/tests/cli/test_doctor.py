@@ -36,6 +36,16 @@ def test_versions_of_packages_and_plugins_are_told(capsys):
     assert all(each["state"] != "trouble" for each in found.values())
 
 
+def test_what_several_packages_need_is_told_once_and_must_suit_them_all(capsys, monkeypatch):
+    needs = {"ncsim-core": ["numpy>=1"], "ncsim-wifi": ["numpy<1"]}
+    monkeypatch.setattr(diagnosis, "requires", lambda name: needs.get(name, []))
+
+    code, text = doctor(capsys)
+
+    assert code == 1
+    assert text.count("numpy ") == 1
+
+
 @pytest.mark.parametrize(
     ("need", "says"),
     [("numpy>=99", "does not fit: numpy>=99"), ("no-such-thing", "not installed; needed")],

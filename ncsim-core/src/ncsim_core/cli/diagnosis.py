@@ -60,13 +60,13 @@ def _needs(distributions: Iterable[str]) -> Iterator[Finding]:
     """Yield what these packages need, and whether the installed version is right."""
     from packaging.requirements import Requirement
 
-    told = set()
+    needs: dict[str, Requirement] = {}
     for text in (text for each in distributions for text in requires(each) or ()):
         need = Requirement(text)
         is_asked = need.marker is None or need.marker.evaluate({"extra": ""})
-        if is_asked and text not in told and not need.name.startswith("ncsim-"):
-            told.add(text)
-            yield _need(need)
+        if is_asked and not need.name.startswith("ncsim-"):
+            needs.setdefault(need.name, need).specifier &= need.specifier
+    yield from map(_need, needs.values())
 
 
 def _need(need: "Requirement") -> Finding:
