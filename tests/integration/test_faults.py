@@ -32,7 +32,7 @@ def removing(self, dag, snapshot):
     import shutil
     shutil.rmtree(sys.argv[3])
     return before(self, dag, snapshot)
-where = getattr(importlib.import_module("ncsim_core.builtin." + module), kind)
+where = getattr(importlib.import_module(module), kind)
 before = getattr(where, method)
 setattr(where, method, globals()[sys.argv[2]])
 from ncsim_core.cli.main import main
@@ -52,14 +52,17 @@ scenario:
       edges: [{from: x, to: y, data_size: 1}]
   config: {scheduler: round_robin, routing: direct, interference: none}
 """
+SCHEDULE = "ncsim_core.builtin.schedulers:RoundRobinScheduler:schedule"
+POP = "ncsim_core.builtin.queue_models:FifoQueue:pop"
 METHODS = [
-    "schedulers:RoundRobinScheduler:schedule",
-    "routing_models:DirectRouting:route",
-    "link_models:StaticLinkModel:rate_links",
-    "queue_models:FifoQueue:push",
-    "queue_models:FifoQueue:pop",
-    "dag_sources:MultiDAGSource:injections",
+    SCHEDULE,
+    "ncsim_core.builtin.routing_models:DirectRouting:route",
+    "ncsim_core.builtin.link_models:StaticLinkModel:rate_links",
+    "ncsim_core.builtin.queue_models:FifoQueue:push",
+    POP,
+    "ncsim_core.builtin.dag_sources:MultiDAGSource:injections",
 ]
+INTERFERENCE = "ncsim_wifi.interference_models.proximity:ProximityModel:"
 
 
 @pytest.fixture
@@ -112,14 +115,43 @@ def test_a_plugin_that_eats_memory_is_stopped_and_named(method, scenario, tmp_pa
     assert "raised MemoryError" in done.stdout + done.stderr
 
 
+@pytest.mark.parametrize("method", ["factors", "reach", "competition"])
+@pytest.mark.parametrize(
+    ("misdeed", "limit", "says"),
+    [
+        ("endless", ("--max-wall", 4), "the limit of 4 s on the clock; it was in endless"),
+        ("hungry", ("--max-memory", 300), "raised MemoryError"),
+    ],
+)
+def test_an_interference_model_that_takes_all_is_stopped_and_named(
+    method, misdeed, limit, says, scenario, tmp_path
+):
+    text = scenario.read_text(encoding="utf-8").replace(
+        "interference: none", "interference: proximity"
+    )
+    for node in "ab":
+        text = text.replace(
+            f"id: {node}, compute", f"id: {node}, position: {{x: 0, y: 0}}, compute"
+        )
+    scenario.write_text(text, encoding="utf-8")
+
+    done = planted(
+        INTERFERENCE + method, misdeed, tmp_path, "run", scenario, "-o", tmp_path / "out", *limit
+    )
+
+    expect_no_traceback(done)
+    assert done.returncode == 2
+    assert says in done.stdout + done.stderr
+
+
 def test_a_sweep_goes_on_after_a_run_that_eats_memory(tmp_path):
     text = sweep_of(tmp_path).read_text(encoding="utf-8").replace("seeds: 50", "seeds: 2")
     path = tmp_path / "limited.yaml"
     path.write_text(f"{text}  limits: {{memory_MB: 200}}\n", encoding="utf-8")
-    method, study = "schedulers:RoundRobinScheduler:schedule", tmp_path / "study"
+    study = tmp_path / "study"
     verb = ["sweep", path, "-o", study, "--executor", "serial"]
 
-    done = planted(method, "hungry", tmp_path, *verb)
+    done = planted(SCHEDULE, "hungry", tmp_path, *verb)
 
     expect_no_traceback(done)
     assert done.returncode == 2
@@ -127,9 +159,9 @@ def test_a_sweep_goes_on_after_a_run_that_eats_memory(tmp_path):
 
 
 def test_what_was_done_until_the_clock_stopped_it_is_kept(scenario, tmp_path):
-    method, out = "queue_models:FifoQueue:pop", tmp_path / "out"
+    out = tmp_path / "out"
 
-    done = planted(method, "endless", tmp_path, "run", scenario, "-o", out, "--max-wall", "0.2")
+    done = planted(POP, "endless", tmp_path, "run", scenario, "-o", out, "--max-wall", "0.2")
 
     assert done.returncode == 2
     assert json.loads((out / "run.json").read_text("utf-8"))["status"] == "limit_reached"
@@ -148,9 +180,8 @@ def test_a_run_that_ends_in_time_is_not_touched_by_limits(scenario):
 def test_an_output_folder_that_is_removed_during_a_run_is_told(scenario, tmp_path):
     parent = tmp_path / "parent"
     parent.mkdir()
-    method = "schedulers:RoundRobinScheduler:schedule"
 
-    done = planted(method, "removing", parent, "run", scenario, "-o", parent / "out")
+    done = planted(SCHEDULE, "removing", parent, "run", scenario, "-o", parent / "out")
 
     expect_no_traceback(done)
     assert done.returncode == 1

@@ -70,7 +70,7 @@ def ncsim_components() -> Iterable[Component]:
                 summary=summary,
                 params={"discount": discount},
                 capabilities=frozenset({"scale_invariant"}),
-                source="issue 3, item 9",
+                source="ncsim",
             )
             for name, discount, summary in (
                 (

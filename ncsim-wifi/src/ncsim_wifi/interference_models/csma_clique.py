@@ -31,7 +31,7 @@ class CsmaCliqueModel(InterferenceModel):
     The share counts every link of the clique, active or not: it is static, so a link that is
     alone does not get its whole bandwidth.
 
-    Source: issue 3, item 9: the published ncsim's ``csma_clique``.
+    Source: the published ncsim's ``csma_clique``.
 
     Args:
         context: Network and config section ``rf``.

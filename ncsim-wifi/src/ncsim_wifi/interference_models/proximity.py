@@ -38,7 +38,7 @@ class ProximityModel(InterferenceModel):
 
     A link lies where its midpoint is. Wired links are out of it.
 
-    Source: issue 3, item 9: the published ncsim's ``proximity``.
+    Source: the published ncsim's ``proximity``.
 
     Args:
         context: Network.

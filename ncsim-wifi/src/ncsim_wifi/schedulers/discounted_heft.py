@@ -29,7 +29,7 @@ class DiscountedHeftScheduler(Scheduler):
     of link l. ``uniform``: the mean of these for every link, which tells what caution alone does.
     It sees the conflict graph, unlike the schedulers of the paper's comparison.
 
-    Source: issue 3, item 9.
+    Source: ncsim; a baseline of our own, in no paper.
 
     Args:
         context: Network and config section ``rf``.
