@@ -74,23 +74,6 @@ def clique_limits_MBps(
     ]
 
 
-def route_goodput_MBps(plant: Plant, hops: Sequence[int]) -> float:
-    """Return the end-to-end goodput of one saturated transfer, alone in the network.
-
-    Every clique of conflicting hops shares its air; the tightest one decides.
-
-    Source: MODEL 5.
-
-    Args:
-        plant: All links of the network.
-        hops: The links of the route, in order.
-    """
-    solo_MBps = plant.solo_MBps[list(hops)].tolist()
-    if not all(solo_MBps):
-        return 0.0
-    return min(limit_MBps for limit_MBps, _ in clique_limits_MBps(plant, hops, solo_MBps))
-
-
 def maximal_cliques(related: BoolArray) -> list[tuple[int, ...]]:
     """Return the maximal cliques of a small symmetric relation (Bron and Kerbosch, 1973)."""
     neighbours = [set(np.flatnonzero(row).tolist()) - {at} for at, row in enumerate(related)]

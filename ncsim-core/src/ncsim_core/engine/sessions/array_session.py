@@ -59,8 +59,7 @@ class ArraySession(TabledSession):
     def update(
         self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
-        self._toggle(on)
-        self._toggle(off)
+        self._toggle(on, off)
         for link in off:
             self._add(link, -1)
             self._window_width[link] = ANYTHING

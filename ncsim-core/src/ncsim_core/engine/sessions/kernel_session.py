@@ -42,8 +42,7 @@ class KernelSession(TabledSession):
     def update(
         self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
-        self._toggle(on)
-        self._toggle(off)
+        self._toggle(on, off)
         progress = self._progress
         switched = np.array((*on, *off), np.int64)
         is_complete = kernel.update(switched, len(on), self._arrays, progress)

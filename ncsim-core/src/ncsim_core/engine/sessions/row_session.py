@@ -29,8 +29,7 @@ class RowSession(TabledSession):
     def update(
         self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]
     ) -> tuple[Sequence[LinkIndex], Sequence[float]]:
-        self._toggle(on)
-        self._toggle(off)
+        self._toggle(on, off)
         for link in off:
             del self._load[link], self._factor[link]
         moved = self._moved([self._rows[i] for i in on], [self._rows[i] for i in off])

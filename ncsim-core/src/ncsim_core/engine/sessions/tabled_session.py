@@ -34,9 +34,10 @@ class TabledSession(InterferenceSession):
     def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
         """Return the loads of active links."""
 
-    def _toggle(self, links: Sequence[LinkIndex]) -> None:
-        """Note that links have been switched, for the case that somebody asks about competition."""
-        self._toggled += links
+    def _toggle(self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]) -> None:
+        """Note which links are switched, for the case that somebody asks about competition."""
+        self._toggled += on
+        self._toggled += off
         if len(self._toggled) > MAX_TOGGLED:
             self._bring_mask_up_to_date()
 
