@@ -14,6 +14,13 @@ from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
 
 BOUNDARY = 2 * STAGES - 1
+DIAGONALS = [
+    (
+        (STAGES - 1) * max(1, both - STAGES + 1) + both,
+        (STAGES - 1) * min(STAGES - 1, both - 1) + both + 1,
+    )
+    for both in range(2, 2 * STAGES - 1)
+]  # interior states of equal a + b, as numbers 7 a + b: the first, and beyond the last
 
 
 class SideRates(NamedTuple):
@@ -87,7 +94,9 @@ def stationary(rates: ChainRates) -> FloatArray:
     Source: MODEL 3.10.
     """
     by_state = ChainRates(*(rate.transpose(1, 2, 0)[..., None].copy() for rate in rates))
-    out = np.asarray(sum(by_state))
+    out = by_state.success_a + by_state.success_b + by_state.common
+    out += by_state.loss_a
+    out += by_state.loss_b
     spread = _by_boundary(by_state, out)
     residual = _boundary_inflow(by_state, spread)
     each = np.arange(BOUNDARY)
@@ -96,7 +105,7 @@ def stationary(rates: ChainRates) -> FloatArray:
     right = np.zeros((len(rates.common), BOUNDARY, 1))
     right[:, -1] = 1.0
     boundary = np.linalg.solve(residual.transpose(1, 0, 2), right)[..., 0]
-    joint = np.maximum(0.0, np.einsum("abcx,cx->cab", spread, boundary))
+    joint = np.maximum(0.0, (spread * boundary).sum(axis=3).transpose(2, 0, 1))
     return np.asarray(joint / joint.sum(axis=(1, 2), keepdims=True))
 
 
@@ -106,14 +115,26 @@ def _by_boundary(rates: ChainRates, out: FloatArray) -> FloatArray:
     stage = np.arange(STAGES)
     spread[0, stage, :, stage] = 1.0
     spread[stage[1:], 0, :, stage[1:] + STAGES - 1] = 1.0
-    into_common = rates.common[:-1, :-1] / out[1:, 1:]
-    into_a, into_b = rates.loss_a[:-1, 1:] / out[1:, 1:], rates.loss_b[1:, :-1] / out[1:, 1:]
-    for a in range(1, STAGES):
-        for b in range(1, STAGES):
-            cell = np.multiply(into_common[a - 1, b - 1], spread[a - 1, b - 1], out=spread[a, b])
-            cell += into_a[a - 1, b - 1] * spread[a - 1, b]
-            cell += into_b[a - 1, b - 1] * spread[a, b - 1]
+    flat = spread.reshape(STAGES * STAGES, *spread.shape[2:])  # state (a, b) is row 7 a + b
+    into_common, into_a, into_b = (
+        _into_interior(rate, out, step)
+        for rate, step in ((rates.common, (1, 1)), (rates.loss_a, (1, 0)), (rates.loss_b, (0, 1)))
+    )
+    for first, stop in DIAGONALS:
+        cells = slice(first, stop, STAGES - 1)
+        above, diagonal, left = (slice(first - k, stop - k, STAGES - 1) for k in (7, 8, 1))
+        cell = np.multiply(into_common[cells], flat[diagonal], out=flat[cells])
+        cell += into_a[cells] * flat[above]
+        cell += into_b[cells] * flat[left]
     return spread
+
+
+def _into_interior(rate: FloatArray, out: FloatArray, step: tuple[int, int]) -> FloatArray:
+    """Return the rate into each interior state over what leaves it, by number of the state."""
+    into = np.zeros_like(rate)
+    into[1:, 1:] = rate[1 - step[0] : STAGES - step[0], 1 - step[1] : STAGES - step[1]]
+    into[1:, 1:] /= out[1:, 1:]
+    return into.reshape(STAGES * STAGES, *rate.shape[2:])
 
 
 def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:

@@ -76,8 +76,10 @@ def subset_weights(sets: EnergySets, on: FloatArray) -> FloatArray:
         on: a, probability that a member is on while the station could send.
     """
     odds = on / (1.0 - on)
-    factors = np.where(sets.subsets[None, :, :], odds[:, None, :], 1.0)
-    return np.where(sets.feasible, factors.prod(axis=2), 0.0)
+    weight = np.ones((len(on), 1))
+    for member in range(on.shape[1]):
+        weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
+    return weight * sets.feasible
 
 
 class GateMasks(NamedTuple):
@@ -86,14 +88,14 @@ class GateMasks(NamedTuple):
     Args:
         relation: The relations.
         row: The energy set of the station that is silenced.
-        with_it: Subsets with the other party of the relation, and no other hostile station.
-        without: Subsets to compare with.
+        subsets: 1 for subsets with the other party of the relation, and no other hostile station,
+            that leave the channel free; for all of these; for subsets to compare with that leave
+            it free; for all of these.
     """
 
     relation: IntArray
     row: IntArray
-    with_it: BoolArray
-    without: BoolArray
+    subsets: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
@@ -114,18 +116,20 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     held = sets.subsets.T.astype(np.float64)
     it = (member == other[relation][:, None]).astype(np.float64) @ held > 0.0
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
-    return GateMasks(relation, row[relation], it & rid_of_others, ~it & rid_of_others)
+    free = ~sets.blocks[row[relation]]
+    with_it, without = it & rid_of_others, ~it & rid_of_others
+    masks = [each.astype(np.float64) for each in (with_it & free, with_it, without & free, without)]
+    return GateMasks(relation, row[relation], (masks[0], masks[1], masks[2], masks[3]))
 
 
-def gate(sets: EnergySets, weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
+def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation.
 
     Source: MODEL 3.6.
     """
     result = np.ones(count)
     weight = weights[masks.row]
-    free = weight * ~sets.blocks[masks.row]
-    with_it = (free * masks.with_it).sum(axis=1) / ((weight * masks.with_it).sum(axis=1) + TINY)
-    without = (free * masks.without).sum(axis=1) / ((weight * masks.without).sum(axis=1) + TINY)
+    sums = [np.add.reduce(weight * each, axis=1) for each in masks.subsets]
+    with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
     result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

@@ -54,15 +54,18 @@ def power_sums(base: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArr
     [4.0, 6.0, 14.0]
     """
     is_one = base > 1.0 - 1e-4  # attempt probabilities are 0.002 or more, or 0
+    of_one = last + 1.0, last * (last + 1.0) / 2.0, last * (last + 1.0) * (2.0 * last + 1.0) / 6.0
+    if is_one.all():
+        return of_one
     y = np.where(is_one, 0.5, base)
     tail = y ** (last + 1.0)
     zeroth = (1.0 - tail) / (1.0 - y)
     first = (zeroth - 1.0 - last * tail) / (1.0 - y)
     second = (2.0 * first - zeroth + 1.0 - last**2 * tail) / (1.0 - y)
     return (
-        np.where(is_one, last + 1.0, zeroth),
-        np.where(is_one, last * (last + 1.0) / 2.0, first),
-        np.where(is_one, last * (last + 1.0) * (2.0 * last + 1.0) / 6.0, second),
+        np.where(is_one, of_one[0], zeroth),
+        np.where(is_one, of_one[1], first),
+        np.where(is_one, of_one[2], second),
     )
 
 
@@ -81,6 +84,7 @@ class Gaps:
 
     Args:
         law: Law of the counters.
+        mean_count: Em_k of that law.
         on_air_us: T, how long a frame of the interferer is on, shape (relations,).
         after_us: ov, the part of a gap that is not counted down.
         overhead_us: ovh, from the end of data until its sender may count.
@@ -90,6 +94,7 @@ class Gaps:
     """
 
     law: CounterLaw
+    mean_count: FloatArray
     on_air_us: FloatArray
     after_us: FloatArray
     overhead_us: FloatArray
@@ -100,7 +105,7 @@ class Gaps:
     @cached_property
     def mean_us(self) -> FloatArray:
         """Return Gbar_k, the mean gap."""
-        return self.after_us[:, None] + self.count_us[:, None] * mean_remaining_count(self.law)
+        return self.after_us[:, None] + self.count_us[:, None] * self.mean_count
 
     @cached_property
     def cycle_us(self) -> FloatArray:
@@ -109,11 +114,24 @@ class Gaps:
 
     @cached_property
     def _moments(self) -> FloatArray:
-        """Return the sums over n <= N of n^i ((1 - kappa) y)^n, shape (relations, N + 1, 4)."""
+        """Return the sums over n <= N of n^i ((1 - kappa) y)^n, shape (4, relations * (N + 1))."""
         n = np.arange(int(self.longest_us / SLOT_us) + 2, dtype=np.float64)
-        base = (1.0 - self.interrupted) * self.law.others[:, 0]
-        terms = base[:, None] ** n
-        return np.cumsum(terms[:, :, None] * n[:, None] ** np.arange(4), axis=1)
+        terms = np.empty((len(self.after_us), len(n)))
+        terms[:, 0] = 1.0
+        terms[:, 1:] = ((1.0 - self.interrupted) * self.law.others[:, 0])[:, None]
+        np.multiply.accumulate(terms, axis=1, out=terms)
+        moments = terms[None] * np.array([np.ones_like(n), n, n**2, n**3])[:, None, :]
+        return np.add.accumulate(moments, axis=2, out=moments).reshape(4, -1)
+
+    @cached_property
+    def _ending(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return c_0, c_1 and c_2 of P_k(n) = (c_0 + c_1 n + c_2 n^2) y^n, shape (relations, 7)."""
+        linear, square, others = self.law
+        return (
+            1.0 - others * (1.0 - linear + square),
+            -linear + others * (linear - 2.0 * square),
+            square * (1.0 - others),
+        )
 
     def short(self, window_us: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return P(gap < v) and E(v - gap)^+ of uninterrupted gaps.
@@ -121,19 +139,17 @@ class Gaps:
         Source: MODEL 3.8, the sums over n <= (v - ov) / sigma.
 
         Args:
-            window_us: v, shape (relations, 7).
+            window_us: v, shape (windows, relations, 1).
         """
         room_us = window_us - self.after_us[:, None]
         last = np.minimum(np.floor(room_us / SLOT_us), WINDOWS - 1.0)
-        moments = np.take_along_axis(
-            self._moments, np.maximum(last, 0.0).astype(np.int64)[:, :, None], axis=1
-        )
-        law = self.law
-        of_0 = 1.0 - law.others * (1.0 - law.linear + law.square)
-        of_1 = -law.linear + law.others * (law.linear - 2.0 * law.square)
-        of_2 = law.square * (1.0 - law.others)
-        ends = of_0 * moments[..., 0] + of_1 * moments[..., 1] + of_2 * moments[..., 2]
-        counted = of_0 * moments[..., 1] + of_1 * moments[..., 2] + of_2 * moments[..., 3]
+        count = self._moments.shape[1] // len(self.after_us)
+        rows = np.arange(0, self._moments.shape[1], count)[:, None]
+        at = rows + np.maximum(last, 0.0).astype(np.int64)
+        of_0, of_1, of_2, of_3 = self._moments[:, at]
+        one, by_n, by_square = self._ending
+        ends = one * of_0 + by_n * of_1 + by_square * of_2
+        counted = one * of_1 + by_n * of_2 + by_square * of_3
         some = last >= 0.0
         return np.where(some, ends, 0.0), np.where(some, room_us * ends - SLOT_us * counted, 0.0)
 
@@ -141,8 +157,12 @@ class Gaps:
         """Return E_k(v) = E(gap - v)^+, the room for starting a window in a gap.
 
         Source: MODEL 3.8.
+
+        Args:
+            window_us: v, shape (relations,).
         """
-        return np.maximum(0.0, self.mean_us - window_us + self.short(window_us)[1])
+        spare_us = self.short(window_us[None, :, None])[1][0]
+        return np.asarray(np.maximum(0.0, self.mean_us - window_us[:, None] + spare_us))
 
 
 class Survival(NamedTuple):
@@ -178,17 +198,19 @@ def survival(
         hazard: h_r.
         is_strong: Whether an interferer that is on at the start kills whatever the overlap.
     """
-    whole_us = np.broadcast_to(window_us[:, None], gaps.mean_us.shape)
-    missed = gaps.room_us(whole_us) / gaps.cycle_us
-    immune = np.exp(-hazard)[:, None]
+    immune = np.exp(-hazard)
+    lethal = -np.log1p(-GAUSS_AT[:, None] * (1.0 - immune)) / hazard
+    borne_us = np.zeros((4, len(hazard), 1))  # nothing, and three random lengths
+    borne_us[1:, :, 0] = np.minimum(1.0, lethal) * protected_us
+    left_us = window_us[:, None] - borne_us
+    ends, spare_us = gaps.short(left_us)
+    room_us = np.maximum(0.0, gaps.mean_us - left_us + spare_us)
+    missed = room_us[0] / gaps.cycle_us
     full = np.where(is_strong[:, None], gaps.mean_us / gaps.cycle_us, 1.0)
-    survives = immune * full
-    for at, weight in zip(GAUSS_AT.tolist(), GAUSS_WEIGHT.tolist(), strict=True):
-        lethal = -np.log1p(-at * -np.expm1(-hazard)) / hazard
-        borne_us = (np.minimum(1.0, lethal) * protected_us)[:, None]
-        left_us = whole_us - borne_us
-        ends, spare_us = gaps.short(left_us)
-        room_us = np.maximum(0.0, gaps.mean_us - left_us + spare_us)
-        room_us = room_us + np.where(is_strong[:, None], 0.0, borne_us * (1.0 - ends))
-        survives = survives + (1.0 - immune) * weight * np.minimum(room_us / gaps.cycle_us, full)
+    partly_us = np.where(is_strong[:, None], 0.0, borne_us * (1.0 - ends))
+    partly = np.minimum((room_us + partly_us) / gaps.cycle_us, full)
+    weights = (1.0 - immune) * GAUSS_WEIGHT[:, None]
+    survives = immune[:, None] * full
+    for weight, part in zip(weights, partly[1:], strict=True):
+        survives = survives + weight[:, None] * part
     return Survival(survives, missed)

@@ -42,18 +42,20 @@ class JointStages:
         self._station = np.array([u for u, _ in sides], np.int64)
         self._relations = np.flatnonzero(self.side >= 0)
         self._joint: FloatArray | None = None
+        self._given: FloatArray | None = None
 
-    def partner_stages(self, alone: FloatArray) -> FloatArray:
-        """Return P(b | a), how likely the other is in stage b, shape (relations, 7, 7).
+    def expected(self, alone: FloatArray, by_stage: FloatArray) -> FloatArray:
+        """Return the mean over the stages b of the other, P(b | a), shape (relations, 7).
 
         Args:
             alone: Time-weighted stages of the interferer of each relation, for want of a chain.
+            by_stage: What is averaged, by b, shape (relations, 7).
         """
-        result = np.repeat(alone[:, None, :], STAGES, axis=1)
-        if self._joint is not None:
-            both = np.concatenate([self._joint, self._joint.transpose(0, 2, 1)])
-            given = both / np.maximum(both.sum(axis=2, keepdims=True), 1e-300)
-            result[self._relations] = given[self.side[self._relations]]
+        result = np.empty_like(by_stage)
+        result[:] = np.add.reduce(alone * by_stage, axis=1, keepdims=True)
+        if self._given is not None:
+            some = self._relations
+            result[some] = np.add.reduce(self._given * by_stage[some][:, None, :], axis=2)
         return result
 
     def update(
@@ -82,6 +84,9 @@ class JointStages:
         fresh = stationary(chain_rates(one, two))
         gain = self._scene.settings.approximations.stage_gain
         self._joint = fresh if self._joint is None else gain * fresh + (1.0 - gain) * self._joint
+        both = np.concatenate([self._joint, self._joint.transpose(0, 2, 1)])
+        both /= np.maximum(np.add.reduce(both, axis=2, keepdims=True), 1e-300)
+        self._given = both[self.side[self._relations]]
 
     def _sides(
         self,

@@ -8,11 +8,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us, SLOT_us
-from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.attempts import Exchange
 from ncsim_wifi.spatial.gaps import Gaps, counter_law, mean_remaining_count, survival
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
-from ncsim_wifi.spatial.overlap import LARGEST_KILL, joint_kill, meets_probability, overlap_us
+from ncsim_wifi.spatial.overlap import (
+    LARGEST_KILL,
+    half_kill,
+    joint_kill,
+    meets_probability,
+    overlap_us,
+)
+from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics
 
@@ -80,54 +87,59 @@ class HiddenLoss(NamedTuple):
 def effective_hazard(scene: Scene, statics: Statics, traffic: Traffic) -> FloatArray:
     """Return h_r of each relation (MODEL 3.7)."""
     hostile = statics.hostile
-    result = statics.alone_hazard.copy()
-    some = np.flatnonzero(hostile.has_helpers)
+    alone = statics.alone_hazard
+    half = half_kill(alone)
+    some = hostile.with_helpers
     if len(some):
-        own = scene.station[hostile.link[some]]
-        station, helper = hostile.station[some], hostile.helper[some]
-        on_us, busy_us = traffic.times.on_air_us, traffic.times.busy_us
-        on = np.clip(traffic.on, LEAST_ON, LARGEST_ON)
-        window_us = overlap_us(
-            on_us[station],
-            busy_us[station] / on[own, station],
-            scene.protected_us[hostile.link[some]],
-            scene.settings.approximations.overlap_scale,
+        half[some] = joint_kill(
+            hostile.half_kill[some], hostile.omega[some], _helpers_met(scene, statics, traffic)
         )
-        helper_on = on[own[:, None], helper] * (on_us / busy_us)[helper]
-        met = meets_probability(helper_on, on_us[helper], window_us[:, None])
-        present = np.where(helper >= 0, met, 0.0)
-        kill = joint_kill(hostile.delta[some], hostile.omega[some], present, hostile.helper_sets)
-        result[some] = -2.0 * np.log1p(-kill)
-    result = np.where(hostile.is_strong, np.maximum(result, statics.alone_hazard), result)
-    return np.maximum(_with_partners(statics, traffic, result), 1e-9)
+        half = np.where(hostile.is_strong, np.maximum(half, half_kill(alone)), half)
+    if hostile.has_partners:
+        half = half + _partners_kill(hostile, traffic)
+    return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9)
 
 
-def _with_partners(statics: Statics, traffic: Traffic, hazard: FloatArray) -> FloatArray:
-    """Return the hazard when another begins in the same slot as the interferer now and then."""
-    hostile = statics.hostile
+def _helpers_met(scene: Scene, statics: Statics, traffic: Traffic) -> FloatArray:
+    """Return x_k of each helper of each relation that has any, 0 where there is none."""
+    hostile, times = statics.hostile, traffic.times
+    some = hostile.with_helpers
+    own, station, helper = statics.own[some], hostile.station[some], hostile.helper[some]
+    on_us, busy_us = times.on_air_us, times.busy_us
+    on = np.minimum(np.maximum(traffic.on[own, station], LEAST_ON), LARGEST_ON)
+    window_us = overlap_us(
+        on_us[station],
+        busy_us[station] / on,
+        scene.protected_us[hostile.link[some]],
+        scene.settings.approximations.overlap_scale,
+    )
+    helper_on = np.minimum(np.maximum(traffic.on[own[:, None], helper], LEAST_ON), LARGEST_ON)
+    helper_on = helper_on * (on_us / busy_us)[helper]
+    met = meets_probability(helper_on, on_us[helper], window_us[:, None])
+    return np.where(helper >= 0, met, 0.0)
+
+
+def _partners_kill(hostile: Hostile, traffic: Traffic) -> FloatArray:
+    """Return what is lost as another begins in the same slot as the interferer now and then."""
     together = traffic.same_slot[hostile.station[:, None], hostile.partner] * hostile.partner_kill
-    kill = -np.expm1(-hazard / 2.0) + together.sum(axis=1)
-    return np.asarray(-2.0 * np.log1p(-np.minimum(kill, LARGEST_KILL)))
-
-
-def group_sums(statics: Statics, values: FloatArray) -> FloatArray:
-    """Return for each relation the sum of its group."""
-    hostile = statics.hostile
-    return np.asarray(np.add.reduceat(values, hostile.group_starts)[hostile.group])
+    return np.asarray(np.add.reduce(together, axis=1))
 
 
 def conditioned_on(
-    scene: Scene, statics: Statics, on: FloatArray, kill: FloatArray, *, earlier_only: bool
+    rivals: tuple[IntArray, IntArray], on: FloatArray, kill: FloatArray
 ) -> FloatArray:
-    """Return A' (or A''), with other hostile groups of the link off (MODEL 3.8)."""
-    hostile = statics.hostile
-    one, two = hostile.same_link
-    counts = scene.senses[hostile.station[one], hostile.station[two]]
-    counts &= hostile.group[one] != hostile.group[two]
-    if earlier_only:
-        counts &= hostile.group[two] < hostile.group[one]
-    logs = kill[two] * np.log1p(-np.minimum(on[two], LARGEST_ON)) * counts
-    return on / np.exp(np.bincount(one, logs, minlength=len(on)))
+    """Return A' (or A''), with other (or earlier) hostile groups of the link off (MODEL 3.8).
+
+    Args:
+        rivals: Which relations are conditioned on which being off.
+        on: A of each relation.
+        kill: kd of each.
+    """
+    one, two = rivals
+    if not len(one):
+        return on
+    logs = kill * np.log1p(-np.minimum(on, LARGEST_ON))
+    return on / np.exp(np.bincount(one, logs[two], minlength=len(on)))
 
 
 def hidden_loss(
@@ -135,26 +147,26 @@ def hidden_loss(
 ) -> HiddenLoss:
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
-    own, other = scene.station[hostile.link], hostile.station
+    own, other = statics.own, hostile.station
     hazard = effective_hazard(scene, statics, traffic)
     kill = np.where(hostile.is_strong, 1.0, -np.expm1(-hazard))
-    on = np.clip(traffic.on[own, other], LEAST_ON, 1.0)
-    later = conditioned_on(scene, statics, on, kill, earlier_only=False)
+    on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
+    later = conditioned_on(statics.rivals, on, kill)
     state = _group_state(statics, traffic, later)
     gaps = _gaps(scene, statics, traffic, kill, state)
     survives, missed, answered = _fates(scene, statics, gaps, hazard, gates)
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
-    alone = time / time.sum(axis=1, keepdims=True)
-    in_group = group_sums(statics, phi * (alone * survives).sum(axis=1))[:, None]
-    survives = np.where(
-        hostile.is_member_of_several[:, None], share * survives + (1.0 - share) * in_group, survives
-    )
+    alone = time / np.add.reduce(time, axis=1, keepdims=True)
+    if hostile.has_several:
+        in_group = hostile.group_sums(phi * (alone * survives).sum(axis=1))[:, None]
+        several = hostile.is_member_of_several[:, None]
+        survives = np.where(several, share * survives + (1.0 - share) * in_group, survives)
     correction = _correction(scene, statics, on, kill, later)
     return HiddenLoss(
-        np.clip(survives, 0.0, 1.0),
-        np.clip(np.maximum(answered, survives), 1e-9, 1.0),
-        np.clip(1.0 - missed, 0.0, 1.0),
+        np.minimum(np.maximum(survives, 0.0), 1.0),
+        np.minimum(np.maximum(np.maximum(answered, survives), 1e-9), 1.0),
+        np.minimum(np.maximum(1.0 - missed, 0.0), 1.0),
         share,
         kill,
         phi,
@@ -167,10 +179,12 @@ def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "Grou
     """Return how active the group of each relation is, from A' of its members."""
     other = statics.hostile.station
     rate = traffic.rate_per_us[other]
-    sum_rate = group_sums(statics, rate)
+    sum_rate = statics.hostile.group_sums(rate)
     own_rate = 1.0 / traffic.cycle_us[other]
     share = own_rate / (own_rate + (sum_rate - rate)[:, None])
-    return GroupState(np.minimum(LARGEST_ON, group_sums(statics, later)), rate / sum_rate, share)
+    return GroupState(
+        np.minimum(LARGEST_ON, statics.hostile.group_sums(later)), rate / sum_rate, share
+    )
 
 
 def _fates(
@@ -187,19 +201,19 @@ def _fates(
     )
     on_part = gaps.on_air_us[:, None] / gaps.cycle_us
     survives, missed = (_gated(each, on_part, *gates) for each in result)
+    if not scene.settings.rts_cts:
+        return survives, missed, np.ones_like(survives)
     by_cts = statics.by_cts[:, None]
     return (
         np.where(by_cts, statics.by_cts_survives, survives),
         np.where(by_cts, statics.by_cts_missed, missed),
-        np.where(by_cts, statics.by_cts_survives, _answered(scene, statics, gaps)),
+        np.where(by_cts, statics.by_cts_survives, _answered(statics, gaps)),
     )
 
 
-def _answered(scene: Scene, statics: Statics, gaps: Gaps) -> FloatArray:
+def _answered(statics: Statics, gaps: Gaps) -> FloatArray:
     """Return what part of RTS find the receiver free, by stage of the interferer."""
-    if not scene.settings.rts_cts:
-        return np.ones_like(gaps.mean_us)
-    room_us = gaps.room_us(np.full_like(gaps.mean_us, CTS_NOTICED_us))
+    room_us = gaps.room_us(np.full_like(gaps.after_us, CTS_NOTICED_us))
     return np.where(statics.hostile.is_strong[:, None], room_us / gaps.cycle_us, 1.0)
 
 
@@ -208,7 +222,7 @@ def _correction(
 ) -> FloatArray:
     """Return prod_g max(1, (1 - sum A'' kd) / (1 - sum A' kd)) of each link (MODEL 3.9)."""
     hostile = statics.hostile
-    earlier = conditioned_on(scene, statics, on, kill, earlier_only=True)
+    earlier = conditioned_on(statics.earlier_rivals, on, kill)
     sums = [
         np.minimum(LARGEST_ON, np.add.reduceat(each * kill, hostile.group_starts))
         for each in (earlier, later)
@@ -245,21 +259,30 @@ def _gaps(
     """Return the gaps between frames of the group of each relation (MODEL 3.8)."""
     other = statics.hostile.station
     times = traffic.times
-    others_log = group_sums(statics, np.log1p(-traffic.tau[other])) - np.log1p(-traffic.tau[other])
-    others = np.where(statics.hostile.is_member_of_several, np.exp(others_log), 1.0)
+    others = _nobody_else_starts(statics.hostile, traffic)
     sum_on, phi, share = state
     law = counter_law(share, others)
-    busy_us = group_sums(statics, phi * times.busy_us[other])
-    spare_us = group_sums(statics, phi * (times.overhead_us - times.silent_us)[other])
+    busy_us = statics.hostile.group_sums(phi * times.busy_us[other])
+    spare_us = statics.hostile.group_sums(phi * (times.overhead_us - times.silent_us)[other])
     counting_us = busy_us * (1.0 / sum_on - 1.0) - spare_us
-    counts = (traffic.stages[other] * mean_remaining_count(law)).sum(axis=1)
+    mean_count = mean_remaining_count(law)
+    counts = np.add.reduce(traffic.stages[other] * mean_count, axis=1)
     count_us = np.maximum(SLOT_us, counting_us / counts)
-    interrupted = np.clip(
-        (count_us - SLOT_us) / (_neighbour_busy_us(scene, traffic)[other] - SLOT_us), 0.0, 1.0
-    )
+    neighbour_us = _neighbour_busy_us(statics, traffic)[other]
+    interrupted = np.minimum(np.maximum((count_us - SLOT_us) / (neighbour_us - SLOT_us), 0.0), 1.0)
     on_air_us, overhead_us, after_us = _seen_us(scene, statics, traffic, kill)
     longest_us = float(statics.window_us.max())
-    return Gaps(law, on_air_us, after_us, overhead_us, count_us, interrupted, longest_us)
+    return Gaps(
+        law, mean_count, on_air_us, after_us, overhead_us, count_us, interrupted, longest_us
+    )
+
+
+def _nobody_else_starts(hostile: Hostile, traffic: Traffic) -> FloatArray:
+    """Return y_o, how likely no other member of the group starts in a slot."""
+    if not hostile.has_several:
+        return np.ones(len(hostile))
+    log = np.log1p(-traffic.tau)[hostile.station]
+    return np.where(hostile.is_member_of_several, np.exp(hostile.group_sums(log) - log), 1.0)
 
 
 def _seen_us(
@@ -286,12 +309,11 @@ def _seen_us(
     return on_air_us, overhead_us, np.maximum(0.0, overhead_us - extension_us)
 
 
-def _neighbour_busy_us(scene: Scene, traffic: Traffic) -> FloatArray:
+def _neighbour_busy_us(statics: Statics, traffic: Traffic) -> FloatArray:
     """Return T_nb, the mean time on the air of what each station senses."""
-    weight = scene.senses * traffic.rate_per_us
-    busy_us = weight @ traffic.times.busy_us
     own_us = traffic.times.busy_us
-    total = weight.sum(axis=1)
+    busy_us = statics.senses @ (traffic.rate_per_us * own_us)
+    total = statics.senses @ traffic.rate_per_us
     return np.where(total > 0.0, busy_us / np.maximum(total, 1e-300), own_us)
 
 
@@ -301,7 +323,8 @@ def _ack_extension_us(
     """Return ext, by how much harmful acknowledgements prolong frames (MODEL 3.8)."""
     hostile = statics.hostile
     each_us = scene.ack_us * (1.0 - traffic.loss) * traffic.attempts
-    extension_us = (-np.expm1(-statics.ack_hazard) * each_us) @ scene.link_of_station.T
-    extension_us = extension_us[hostile.link, hostile.station]
+    answers, link = statics.answers_of, statics.answers_of.link
+    harm_us = statics.ack_kill[hostile.link[answers.relation], link] * each_us[link]
+    extension_us = np.bincount(answers.relation, harm_us, minlength=len(hostile))
     is_harmful = kill >= scene.settings.approximations.ack_extension_kill
     return np.where(is_harmful & ~statics.stops_at_cts, extension_us, 0.0)

@@ -5,7 +5,7 @@ Source: MODEL 3.7.
 
 import numpy as np
 
-from ncsim_wifi.quantities import BoolArray, FloatArray
+from ncsim_wifi.quantities import FloatArray
 
 LARGEST_KILL = 1.0 - 1e-9
 
@@ -44,20 +44,26 @@ def meets_probability(on: FloatArray, on_air_us: FloatArray, window_us: FloatArr
     )
 
 
-def joint_kill(
-    delta: FloatArray, omega: FloatArray, present: FloatArray, helper_sets: BoolArray
-) -> FloatArray:
+def half_kill(delta: FloatArray) -> FloatArray:
+    """Return the part of frames lost that an extra hazard overlaps half (MODEL 3.7)."""
+    return -np.expm1(-delta / 2.0)
+
+
+def joint_kill(kill: FloatArray, omega: FloatArray, present: FloatArray) -> FloatArray:
     """Return kd, the part of overlapped frames lost to an interferer beyond what helpers take.
 
     Source: MODEL 3.7.
 
     Args:
-        delta: Extra hazard beyond that of each set of helpers, shape (relations, sets).
+        kill: Part of frames lost beyond what each set of helpers takes, shape (relations, sets);
+            set number s holds helper i if bit i of s is set.
         omega: Weight of each set, 0 where impossible.
         present: x_k, shape (relations, helpers), 0 where there is none.
-        helper_sets: Which helpers a set holds.
     """
-    chance = np.where(helper_sets[None], present[:, None, :], 1.0 - present[:, None, :])
-    weight = omega * chance.prod(axis=2)
-    kill = (weight * -np.expm1(-delta / 2.0)).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-300)
-    return np.asarray(np.minimum(kill, LARGEST_KILL))
+    chance = np.ones((len(present), 1))
+    for helper in range(present.shape[1]):
+        there = present[:, helper, None]
+        chance = np.concatenate([chance * (1.0 - there), chance * there], axis=1)
+    weight = omega * chance
+    total = np.maximum(np.add.reduce(weight, axis=1), 1e-300)
+    return np.asarray(np.minimum(np.add.reduce(weight * kill, axis=1) / total, LARGEST_KILL))

@@ -11,6 +11,7 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.near import NOBODY, Near, grouped
+from ncsim_wifi.spatial.overlap import half_kill
 from ncsim_wifi.spatial.scene import Scene
 
 SURVIVAL_DISCOUNT = 0.6
@@ -29,7 +30,6 @@ class Hostile:
         delta: Extra hazard beyond that of each set of helpers, shape (relations, sets).
         omega: Weight of each set of helpers, 0 where the set is impossible.
         helper: Stronger interferers that may act together with it, shape (relations, helpers).
-        helper_sets: Which helpers a set holds, shape (sets, helpers).
         group: Number of the group of each relation.
         by_cts_only: Whether only the CTS that answer the station reach the receiver.
         locks: Whether the receiver locks on frames of the station.
@@ -44,7 +44,6 @@ class Hostile:
     delta: FloatArray
     omega: FloatArray
     helper: IntArray
-    helper_sets: BoolArray
     group: IntArray
     by_cts_only: BoolArray
     locks: BoolArray
@@ -60,6 +59,16 @@ class Hostile:
         return np.flatnonzero(np.diff(self.group, prepend=-1))
 
     @cached_property
+    def links(self) -> IntArray:
+        """Return the links that suffer from anybody."""
+        return self.link[self.link_starts]
+
+    @cached_property
+    def link_starts(self) -> IntArray:
+        """Return the first relation of each of these."""
+        return np.flatnonzero(np.diff(self.link, prepend=-1))
+
+    @cached_property
     def link_of_group(self) -> IntArray:
         """Return the link that each group belongs to."""
         return self.link[self.group_starts]
@@ -70,17 +79,30 @@ class Hostile:
         return np.bincount(self.group)[self.group] > 1
 
     @cached_property
-    def same_link(self) -> tuple[IntArray, IntArray]:
-        """Return all ordered pairs of different relations of one link."""
-        firsts, seconds = np.nonzero(
-            (self.link[:, None] == self.link[None, :]) & ~np.eye(len(self), dtype=np.bool_)
-        )
-        return firsts, seconds
+    def has_several(self) -> bool:
+        """Return whether any group has several members."""
+        return len(self.group_starts) < len(self)
 
     @cached_property
-    def has_helpers(self) -> BoolArray:
-        """Return which relations may act together with others."""
-        return np.asarray((self.helper != NOBODY).any(axis=1))
+    def with_helpers(self) -> IntArray:
+        """Return the relations that may act together with others."""
+        return np.flatnonzero((self.helper != NOBODY).any(axis=1))
+
+    @cached_property
+    def has_partners(self) -> bool:
+        """Return whether any interferer may collide with another that harms the link."""
+        return bool((self.partner_kill != 0.0).any())
+
+    @cached_property
+    def half_kill(self) -> FloatArray:
+        """Return the part of half overlapped frames that ``delta`` destroys."""
+        return half_kill(self.delta)
+
+    def group_sums(self, values: FloatArray) -> FloatArray:
+        """Return for each relation the sum of its group."""
+        if not self.has_several:
+            return values
+        return np.asarray(np.add.reduceat(values, self.group_starts)[self.group])
 
 
 def hostile_relations(scene: Scene, near: Near) -> Hostile:
@@ -113,7 +135,6 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
         delta[link, place],
         omega[link, place],
         helper_station[link, place],
-        sets,
         group,
         by_cts_only[link, place],
         locks[link, place],

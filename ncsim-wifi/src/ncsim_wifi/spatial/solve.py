@@ -251,12 +251,11 @@ class FixedPoint:
     ) -> tuple[FloatArray, FloatArray]:
         """Return tot_l(a), and sbar_r(a) of each relation (MODEL 3.9)."""
         hostile = self._statics.hostile
-        given = self._joint.partner_stages(hidden.alone)
-        parts = np.einsum("rab,rb->ra", given, survives)
+        parts = self._joint.expected(hidden.alone, survives)
         logs = hidden.phi[:, None] * np.log(np.maximum(parts, 1e-12))
-        log_sums = np.zeros((len(base), STAGES))
-        np.add.at(log_sums, hostile.link, logs)
-        whole = np.minimum(1.0, np.exp(log_sums) * hidden.correction[:, None])
+        whole = np.ones((len(base), STAGES))
+        whole[hostile.links] = np.exp(np.add.reduceat(logs, hostile.link_starts))
+        whole = np.minimum(1.0, whole * hidden.correction[:, None])
         return base[:, None] * whole, parts
 
     def _gates(self, traffic: Traffic) -> tuple[FloatArray, FloatArray]:
@@ -273,10 +272,9 @@ class FixedPoint:
         fresh = (weights * sets.blocks).sum(axis=1) / weights.sum(axis=1)
         self._blocked[sets.station] += settings.gain * (fresh - self._blocked[sets.station])
         np.minimum(self._blocked, LARGEST_ON, out=self._blocked)
-        before = gate(sets, weights, statics.before, count)
-        during = gate(sets, weights, statics.during, count)
-        lasts = np.exp(-self._scene.data_us[statics.hostile.link] / settings.helper_cycle_us)
-        return before, 1.0 - (1.0 - during) * lasts
+        before = gate(weights, statics.before, count)
+        during = gate(weights, statics.during, count)
+        return before, 1.0 - (1.0 - during) * statics.protection_ends
 
     def _partner_collisions(self, traffic: Traffic, during: FloatArray) -> FloatArray:
         """Return what same-slot collisions with partners by summed power leave (MODEL 3.6)."""

@@ -1,6 +1,7 @@
 """What stays the same while the fixed point is approached."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,13 +33,24 @@ from ncsim_wifi.spatial.scene import Scene
 LETHAL_BURST = 0.5  # an RTS that kills the data that it meets; hardly ever in between
 
 
+class AnswersOf(NamedTuple):
+    """The links of the interferer of each relation, relation by relation."""
+
+    relation: IntArray
+    link: IntArray
+
+
 @dataclass(frozen=True)
 class Statics:
     """Relations and tables of one scene.
 
     Args:
+        senses: S as numbers.
         occupancy: Who is on the air together.
         hostile: Hidden relations.
+        own: The station that sends on the link of each relation.
+        rivals: Which relations of a link are conditioned on which others.
+        earlier_rivals: The same, on relations of earlier groups only.
         window_us: V_r, the window in which an interferer must not begin.
         alone_hazard: h(w) of each relation.
         by_cts: Whether a relation is one of stations kept apart by CTS only.
@@ -51,17 +63,23 @@ class Statics:
         far_mW: Power of stations that only raise the noise, shape (links, stations).
         others: Harmful stations beyond the nearest.
         same_slot_loss: sync[l, w].
-        ack_hazard: h_ack[l, k].
+        ack_kill: 1 - exp(-h_ack[l, k]).
+        answers_of: Whose acknowledgements may prolong frames of the interferer of a relation.
         acks: Who suffers from whose acknowledgements.
         deaf_to_ack: Part of its own acknowledgements that a sender loses to stations that it does
             not sense, while they send, shape (links, stations).
         energy: Who is silenced by summed power.
         before: Subsets for the gates at the sender.
         during: Subsets for the gates at the interferer.
+        protection_ends: How likely summed power at the interferer ends within a frame.
     """
 
+    senses: FloatArray
     occupancy: OccupancyModel
     hostile: Hostile
+    own: IntArray
+    rivals: tuple[IntArray, IntArray]
+    earlier_rivals: tuple[IntArray, IntArray]
     window_us: FloatArray
     alone_hazard: FloatArray
     by_cts: BoolArray
@@ -74,12 +92,14 @@ class Statics:
     far_mW: FloatArray
     others: Others
     same_slot_loss: FloatArray
-    ack_hazard: FloatArray
+    ack_kill: FloatArray
+    answers_of: AnswersOf
     acks: AckRelations
     deaf_to_ack: FloatArray
     energy: EnergySets
     before: GateMasks
     during: GateMasks
+    protection_ends: FloatArray
 
 
 def statics_of(scene: Scene) -> Statics:
@@ -92,9 +112,14 @@ def statics_of(scene: Scene) -> Statics:
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
     fatal = fatal_slots(fate_of(scene, hostile, alone, RTS_RATIO_dB), scene.data_us[hostile.link])
+    rivals, earlier_rivals = _rivals(scene, hostile)
     return Statics(
+        scene.senses.astype(np.float64),
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
         hostile,
+        own,
+        rivals,
+        earlier_rivals,
         _windows_us(scene, hostile),
         alone,
         scene.silenced_by_cts[own, hostile.station],
@@ -107,13 +132,31 @@ def statics_of(scene: Scene) -> Statics:
         near.far_mW,
         near.others,
         same_slot_loss(scene, near.noise_mW),
-        hazards,
+        -np.expm1(-hazards),
+        AnswersOf(*np.nonzero(scene.link_of_station[hostile.station])),
         ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
         deaf_to_ack(scene),
         energy,
         gate_masks(scene, energy, hostile, before=True),
         gate_masks(scene, energy, hostile, before=False),
+        np.exp(-scene.data_us[hostile.link] / scene.settings.approximations.helper_cycle_us),
     )
+
+
+def _rivals(
+    scene: Scene, hostile: Hostile
+) -> tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]:
+    """Return pairs of relations of a link in different groups, the first sensing the second.
+
+    Returns:
+        All of them, and those of which the second belongs to an earlier group.
+    """
+    counts = hostile.link[:, None] == hostile.link[None, :]
+    counts &= hostile.group[:, None] != hostile.group[None, :]
+    counts &= scene.senses[hostile.station[:, None], hostile.station[None, :]]
+    one, two = np.nonzero(counts)
+    earlier = hostile.group[two] < hostile.group[one]
+    return (one, two), (one[earlier], two[earlier])
 
 
 def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
