@@ -28,6 +28,7 @@ SEEDS: Final = {
     "scenario_yaml": ("examples/*.yaml", "ncsim-core/tests/scenario/bad/*.yaml"),
     "published": ("examples/published-form/*.yaml",),
     "sweep": ("examples/paper/*.yaml", "examples/random-networks/*.yaml"),
+    "workflow": ("examples/workflows/*.json",),
     "trace": ("tests/integration/data/*.jsonl",),
 }
 """Files of the repository that a target begins with, besides its own corpus."""
@@ -111,7 +112,7 @@ def fuzz_by_coverage(name: str, corpus: Path, seconds: int) -> None:
     """Let libFuzzer choose what to keep; half of the changes are made by ``mutated``."""
     import atheris
 
-    with atheris.instrument_imports(include=["ncsim_core"]):
+    with atheris.instrument_imports(include=["ncsim_core", "ncsim_viz"]):
         target = target_named(name)
 
     def mutate(data: bytes, max_size: int, seed: int) -> bytes:
@@ -168,7 +169,7 @@ def _lines_reached(target: Callable[[bytes], None], data: bytes) -> set[tuple[st
     lines: set[tuple[str, int]] = set()
 
     def follow(frame, event, argument):
-        if "ncsim_core" not in frame.f_code.co_filename:
+        if "ncsim_" not in frame.f_code.co_filename:
             return None
         if event == "line":
             lines.add((frame.f_code.co_filename, frame.f_lineno))

@@ -4,32 +4,44 @@ Allowed is one of two outcomes: the input is accepted, or refused with one ``Ncs
 says where. What is accepted is used, too, as far as that is cheap.
 """
 
+import json
 import re
 import tempfile
 from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from ncsim_core.api import prepare
 from ncsim_core.engine.setup import Limits
 from ncsim_core.errors import NcsimError
 from ncsim_core.metrics import compute_metrics
+from ncsim_core.metrics.comparison import compare_runs
+from ncsim_core.metrics.documents import comparison_document
+from ncsim_core.metrics.explanation import explain_run
 from ncsim_core.scenario.faults import ScenarioFaults
 from ncsim_core.scenario.loader import load_scenario, parse_scenario
-from ncsim_core.scenario.model import Scenario
+from ncsim_core.scenario.model import Scenario, dag_row
 from ncsim_core.scenario.wfcommons import read_workflow
+from ncsim_core.scenario.yaml_text import dump_yaml
 from ncsim_core.sweep.reading import load_sweep
 from ncsim_core.trace.check import check_trace
 from ncsim_core.trace.export.perfetto import perfetto_text
 from ncsim_core.trace.export.published import published_text
+from ncsim_core.trace.export.tables import write_csv
 from ncsim_core.trace.loading import load_run
 from ncsim_core.trace.records import TraceError
+from ncsim_core.workflow import Injection
+from ncsim_viz.terminal import TerminalSize, terminal_gantt
 
 FOLDER: Final = Path(tempfile.mkdtemp(prefix="ncsim-fuzz-"))
 MAX_RUN_SIZE: Final = 60
 """Nodes, links and tasks up to which an accepted scenario is also run for a while."""
 LINE_OF_TRACE: Final = re.compile(r"trace\.jsonl(:\d+: |: (cannot be read|this run|is zstd))")
+
+
+CONTRADICTION: Final = re.compile(r"contradicts itself|has no makespan")
+T = TypeVar("T")
 
 
 class BadRefusalError(AssertionError):
@@ -86,12 +98,11 @@ def workflow(data: bytes) -> None:
     try:
         found = read_workflow(path)
     except NcsimError as error:
-        if not isinstance(error, ScenarioFaults):
-            return  # a workflow that is no DAG: the file is named, and the cycle or id
         _expect_places(error)
         return
     assert found.external_MB >= 0
     assert found.unread_MB >= 0
+    dump_yaml({"dags": [dag_row(Injection(0, found.dag))]})
 
 
 def sweep(data: bytes) -> None:
@@ -108,30 +119,30 @@ def sweep(data: bytes) -> None:
 
 
 def trace(data: bytes) -> None:
-    """Read a trace, check it, count it, export it."""
+    """Read a trace, check it, and use it as every verb that reads traces does."""
     path = FOLDER / "trace.jsonl"
     path.write_bytes(data)
-    for use in (lambda: list(check_trace(path)), lambda: published_text(path)):
-        _tolerate_trace_error(use)
-    try:
-        run = load_run(path)
-    except TraceError as error:
-        _expect_line(error)
+    _tolerate(LINE_OF_TRACE, lambda: list(check_trace(path)))
+    _tolerate(LINE_OF_TRACE, lambda: published_text(path))
+    run = _tolerate(LINE_OF_TRACE, lambda: load_run(path))
+    if run is None:
         return
-    _tolerate_trace_error(lambda: compute_metrics(run))
-    _tolerate_trace_error(lambda: perfetto_text(run))
+    json.dumps(compute_metrics(run), allow_nan=False)
+    perfetto_text(run)
+    write_csv(run, FOLDER)
+    terminal_gantt(run, TerminalSize(80, has_blocks=True))
+    json.dumps(comparison_document(compare_runs(run, run)), allow_nan=False)
+    _tolerate(CONTRADICTION, lambda: explain_run(run))
 
 
-def _tolerate_trace_error(use: Callable[[], object]) -> None:
+def _tolerate(wanted: re.Pattern[str], use: Callable[[], T]) -> T | None:
+    """Return what a use gives; ``None`` if it is refused with the wanted words."""
     try:
-        use()
+        return use()
     except TraceError as error:
-        _expect_line(error)
-
-
-def _expect_line(error: TraceError) -> None:
-    if not LINE_OF_TRACE.search(str(error)):
-        raise BadRefusalError(str(error)) from error
+        if not wanted.search(str(error)):
+            raise BadRefusalError(str(error)) from error
+        return None
 
 
 def _expect_places(error: NcsimError) -> None:

@@ -14,6 +14,7 @@ from typing import Literal, NewType, TypeAlias
 from typing_extensions import override
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.units import MAX_QUANTITY, is_quantity
 
 NodeId = NewType("NodeId", str)
 LinkId = NewType("LinkId", str)
@@ -115,7 +116,7 @@ class Network:
 
     Raises:
         ScenarioError: An id is given twice, a link ends at an unknown node or where it
-            began, or a number is negative, infinite or not a number.
+            began, or a number is negative, above ``MAX_QUANTITY`` or not a number.
     """
 
     nodes: tuple[Node, ...]
@@ -220,21 +221,16 @@ def route_fault(
     return None
 
 
-def is_finite_and_not_negative(value: float) -> bool:
-    """Return whether a quantity of the scenario is an ordinary number, 0 or more."""
-    return math.isfinite(value) and value >= 0
-
-
 def _check_nodes(nodes: tuple[Node, ...]) -> None:
     seen: set[str] = set()
     for node in nodes:
         if node.id in seen:
             raise ScenarioError(f"node {node.id!r} is given twice; node ids must be unique")
         seen.add(node.id)
-        if not (math.isfinite(node.compute_capacity) and node.compute_capacity > 0):
+        if not (is_quantity(node.compute_capacity) and node.compute_capacity > 0):
             raise ScenarioError(
-                f"node {node.id!r}: compute_capacity must be finite and greater than 0, "
-                f"not {node.compute_capacity!r}"
+                f"node {node.id!r}: compute_capacity must be greater than 0 and "
+                f"at most {MAX_QUANTITY:g}, not {node.compute_capacity!r}"
             )
 
 
@@ -250,7 +246,7 @@ def _check_links(links: tuple[Link, ...], node_ids: set[NodeId]) -> None:
         if link.source == link.target:
             raise ScenarioError(f"link {link.id!r} leads from node {link.source!r} to itself")
         for name, value in (("bandwidth", link.bandwidth_MBps), ("latency", link.latency_s)):
-            if value is not None and not is_finite_and_not_negative(value):
+            if value is not None and not is_quantity(value):
                 raise ScenarioError(
-                    f"link {link.id!r}: {name} must be finite and 0 or more, not {value!r}"
+                    f"link {link.id!r}: {name} must be from 0 to {MAX_QUANTITY:g}, not {value!r}"
                 )

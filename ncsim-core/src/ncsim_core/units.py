@@ -19,6 +19,17 @@ BEYOND_us: Instant = HORIZON_us + 1
 """What stands for every later instant, and for never."""
 
 MEGABITS_PER_MEGABYTE = 8.0
+MAX_QUANTITY = 1e100
+"""No cost, size, speed or latency is larger, so that no sum of them leaves the numbers."""
+
+
+def is_quantity(value: float) -> bool:
+    """Return whether a cost, size, speed or latency lies between 0 and ``MAX_QUANTITY``.
+
+    >>> is_quantity(0.0), is_quantity(-1.0), is_quantity(float("inf")), is_quantity(float("nan"))
+    (True, False, False, False)
+    """
+    return 0 <= value <= MAX_QUANTITY
 
 
 def us_from_s(seconds: float) -> Instant:

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import NewType
 
 from ncsim_core.errors import ScenarioError
-from ncsim_core.network import NodeId, is_finite_and_not_negative
-from ncsim_core.units import Instant
+from ncsim_core.network import NodeId
+from ncsim_core.units import MAX_QUANTITY, Instant, is_quantity
 
 TaskId = NewType("TaskId", str)
 DagId = NewType("DagId", str)
@@ -52,7 +52,7 @@ class DAG:
 
     Raises:
         ScenarioError: An id or dependency is given twice, a dependency names an unknown
-            task, the dependencies form a cycle, or a quantity is not finite and 0 or more.
+            task, the dependencies form a cycle, or a quantity is not from 0 to ``MAX_QUANTITY``.
     """
 
     id: DagId
@@ -152,10 +152,10 @@ def _check_tasks(dag: DAG) -> None:
         if task.id in seen:
             raise ScenarioError(f"DAG {dag.id!r}: task {task.id!r} is given twice")
         seen.add(task.id)
-        if not is_finite_and_not_negative(task.compute_cost):
+        if not is_quantity(task.compute_cost):
             raise ScenarioError(
-                f"DAG {dag.id!r}, task {task.id!r}: compute_cost must be finite and "
-                f"0 or more, not {task.compute_cost!r}"
+                f"DAG {dag.id!r}, task {task.id!r}: compute_cost must be from 0 to "
+                f"{MAX_QUANTITY:g}, not {task.compute_cost!r}"
             )
 
 
@@ -171,7 +171,8 @@ def _check_dependencies(dag: DAG) -> None:
         if ends in seen:
             raise ScenarioError(f"{label} is given twice")
         seen.add(ends)
-        if not is_finite_and_not_negative(dependency.data_size_MB):
+        if not is_quantity(dependency.data_size_MB):
             raise ScenarioError(
-                f"{label}: data_size must be finite and 0 or more, not {dependency.data_size_MB!r}"
+                f"{label}: data_size must be from 0 to {MAX_QUANTITY:g}, "
+                f"not {dependency.data_size_MB!r}"
             )

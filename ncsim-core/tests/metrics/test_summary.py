@@ -6,12 +6,18 @@ import pytest
 from hypothesis import given, settings
 from jsonschema import Draft202012Validator
 from ncsim_core.engine.setup import Limits
+from ncsim_core.engine.simulation import Simulation
 from ncsim_core.metrics import compute_metrics, metrics_schema
+from ncsim_core.network import Link, LinkRates, Network, Node
+from ncsim_core.testing.builders import inject
+from ncsim_core.testing.toys import models
 from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.loading import load_run
 from ncsim_core.trace.recorder import RunRecorder
 from ncsim_core.trace.writer import TraceWriter
+from ncsim_core.units import MAX_QUANTITY
+from ncsim_core.workflow import DAG, Dependency, Task
 
 
 def metrics_of(simulation_of, **options):
@@ -89,10 +95,25 @@ def test_completed_runs_have_equal_metrics_whatever_was_recorded_of_rates():
 
 
 def _limited(observers, **limits):
-    from ncsim_core.engine.simulation import Simulation
-
     whole = worked_example()
     return Simulation(whole.setup.network, whole.setup.models, Limits(**limits), observers)
+
+
+@pytest.mark.parametrize("size_MB", [1e-320, 1e-30, 1e-6, 1e95, MAX_QUANTITY])
+def test_sizes_of_any_order_of_magnitude_have_metrics(size_MB):
+    network = Network(
+        (Node("a", 1.0), Node("b", 1.0)),
+        (Link("ab", "a", "b"),),
+        LinkRates((MAX_QUANTITY,), (0.0,)),
+    )
+    tasks = (Task("s", 0.0, "a"), Task("t", 0.0, "b"), Task("u", 0.0, "b"))
+    dag = DAG("d", tasks, (Dependency("s", "t", size_MB), Dependency("s", "u", size_MB)))
+    chosen = models(network, [inject(dag)])
+
+    metrics = metrics_of(lambda *observers: Simulation(network, chosen, Limits(), observers))
+
+    assert metrics["remote_MB"] == 2 * size_MB
+    assert metrics["max_transfer_slowdown"] in (None, pytest.approx(2.0))
 
 
 def test_the_schema_is_a_schema():

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import pytest
-from ncsim_core.errors import ScenarioError
 from ncsim_core.scenario.faults import ScenarioFaults
 from ncsim_core.scenario.wfcommons import read_workflow
 
@@ -132,11 +131,67 @@ def test_a_task_without_run_time_and_one_given_twice_are_told(tmp_path):
     ]
 
 
-def test_a_cycle_is_refused(tmp_path):
-    path = film(lambda text: text.replace('"parents": []', '"parents": ["join"]', 1), tmp_path)
+CYCLES = {
+    "parent": ('"parents": []', '"parents": ["join"]', (8, "tasks[0].parents[0]")),
+    "child": ('"children": []', '"children": ["split"]', (13, "tasks[5].children[0]")),
+    "file": (
+        '"inputFiles": ["film"]',
+        '"inputFiles": ["film", "page"]',
+        (8, "tasks[0].inputFiles[1]"),
+    ),
+}
 
-    with pytest.raises(ScenarioError, match=r"film\.json: .*has a cycle"):
-        read_workflow(path)
+
+@pytest.mark.parametrize("way", CYCLES)
+def test_a_cycle_is_told_where_a_name_or_a_file_makes_it(way, tmp_path):
+    before, after, expected = CYCLES[way]
+    path = film(lambda text: text.replace(before, after, 1), tmp_path)
+
+    [(line, _, place, message)] = faults_of(path)
+    assert (line, place.removeprefix("workflow.specification.")) == expected
+    assert message.startswith("the dependencies form a cycle: ")
+
+
+def test_a_task_that_waits_for_itself_is_told_at_its_place(tmp_path):
+    path = film(lambda text: text.replace('["split"]', '["cut_1"]', 1), tmp_path)
+
+    [(line, _, _, message)] = faults_of(path)
+    assert (line, message) == (9, "a task must not wait for itself")
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ('"id": "split"', '"id": "sp\\nlit"', "must be one line of plain text, not 'sp\\nlit'"),
+        ('"film page"', '"film\\tpage"', "must be one line of plain text, not 'film\\tpage'"),
+        ('"film page"', "7", "must be text, not 7; put it in quotes"),
+        ('"sizeInBytes": 22000000', '"sizeInBytes": 1e101', "must be at most 1e+100, not 1e+101"),
+        (
+            '"runtimeInSeconds": 12.5',
+            '"runtimeInSeconds": 1e99',
+            "costs more than 1e+100 units at 100 units per second",
+        ),
+    ],
+)
+def test_what_no_scenario_may_hold_is_told_at_its_place(before, after, told, tmp_path):
+    faults = faults_of(film(lambda text: text.replace(before, after, 1), tmp_path))
+
+    assert told in [message for _, _, _, message in faults]
+    assert all(line for line, _, _, _ in faults)
+
+
+def test_files_that_make_a_million_dependencies_are_told_before_they_are_made(tmp_path):
+    ids = [f"t{number}" for number in range(2001)]
+    tasks = [{"id": each, "parents": [], "inputFiles": ["f"], "outputFiles": ["f"]} for each in ids]
+    specification = {"tasks": tasks, "files": [{"id": "f", "sizeInBytes": 1}]}
+    measured = [{"id": each, "runtimeInSeconds": 1} for each in ids]
+    workflow = {"specification": specification, "execution": {"tasks": measured}}
+    path = tmp_path / "many.json"
+    path.write_text(json.dumps({"workflow": workflow}), encoding="utf-8")
+
+    [(_, _, place, message)] = faults_of(path)
+    assert place == "workflow.specification.tasks[499].inputFiles"
+    assert message == "up to here, files make more than 1,000,000 dependencies"
 
 
 @pytest.mark.parametrize(

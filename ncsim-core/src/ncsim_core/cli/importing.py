@@ -1,6 +1,6 @@
 """``ncsim import``: workflows of other tools."""
 
-import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -51,8 +51,7 @@ def import_workflow(  # noqa: PLR0913 - one parameter per option
 
     if output is not None and output.exists():
         raise ScenarioError(f"{output}: exists already; choose another name")
-    if not math.isfinite(at):
-        raise ScenarioError(f"--at {at}: must be a finite number of seconds")
+    _check_options(at, speed, dag_id)
     found = read_workflow(workflow, units_per_s=speed, dag_id=dag_id)
     document = _document(Injection(us_from_s(at), found.dag), into, keep=keep)
     _write(document, output)
@@ -64,6 +63,18 @@ def import_workflow(  # noqa: PLR0913 - one parameter per option
         f"{found.unread_MB:.6g} MB that no task reads",
         err=True,
     )
+
+
+def _check_options(at: float, speed: float, dag_id: str | None) -> None:
+    from ncsim_core.scenario.schema import ID_PATTERN, MAX_INJECT_AT_s
+    from ncsim_core.units import is_quantity
+
+    if not 0 <= at <= MAX_INJECT_AT_s:
+        raise ScenarioError(f"--at {at}: must be from 0 to {MAX_INJECT_AT_s} seconds")
+    if not is_quantity(speed):
+        raise ScenarioError(f"--speed {speed}: must be a finite number of units per second")
+    if dag_id is not None and not re.search(ID_PATTERN, dag_id):
+        raise ScenarioError(f"--id {dag_id!r}: must be one line of plain text, not empty")
 
 
 def _document(injection: "Injection", into: Path | None, *, keep: bool) -> dict[str, object]:

@@ -10,7 +10,7 @@ class LinkModel(ABC):
 
     @abstractmethod
     def rate_links(self, network: Network) -> LinkRates:
-        """Return bandwidth (MB/s) and latency (s) of each link, finite and 0 or more.
+        """Return bandwidth (MB/s) and latency (s) of each link, from 0 to ``MAX_QUANTITY``.
 
         Raises:
             ScenarioError: A link lacks something that the model needs, such as a bandwidth

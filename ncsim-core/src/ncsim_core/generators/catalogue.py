@@ -12,6 +12,7 @@ from ncsim_core.generators import dags as forms
 from ncsim_core.generators import networks as shapes
 from ncsim_core.generators.paper import CAPACITIES, COMPUTE_COST, PAYLOAD_MB, SPACING_m
 from ncsim_core.generators.streams import Draws
+from ncsim_core.units import MAX_QUANTITY
 
 Parameters: TypeAlias = Mapping[str, Any]
 Schema: TypeAlias = Mapping[str, Any]
@@ -56,7 +57,7 @@ def _positive(description: str, **more: object) -> Schema:
 
 
 def _amounts(description: str, default: object, **bounds: object) -> Schema:
-    number = {"type": "number", **bounds}
+    number = {"type": "number", "maximum": MAX_QUANTITY, **bounds}
     drawn = {
         "type": "object",
         "properties": {
@@ -85,12 +86,14 @@ NETWORK_PROPERTIES: Final[Mapping[str, Schema]] = {
         "description": "Clean bandwidth of every link, MB/s; without, the link model derives it.",
         "type": ["number", "null"],
         "minimum": 0,
+        "maximum": MAX_QUANTITY,
         "default": None,
     },
     "latency_s": {
         "description": "Latency of every link, s.",
         "type": "number",
         "minimum": 0,
+        "maximum": MAX_QUANTITY,
         "default": 0.0,
     },
 }

@@ -5,7 +5,7 @@ numbers whether it is read from its trace or was recorded in memory.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from ncsim_core.engine.outcome import RunStatus
@@ -24,7 +24,7 @@ def compute_metrics(run: RunTrace) -> dict[str, object]:
     unfinished transfers, a coarse trace does not tell how much was served.
     """
     end = run.end
-    slowdowns = [_slowdown(each, run) for each in run.transfers if _is_served(each)]
+    slowdowns = list(_slowdowns(run))
     started = [each for each in run.remote_transfers if each.started_us is not None]
     return {
         "format": METRICS_FORMAT,
@@ -57,15 +57,17 @@ def _critical_path_s(run: RunTrace) -> float | None:
     return s_from_us(critical_path_us(run))
 
 
-def _is_served(transfer: RunTransfer) -> bool:
-    return transfer.ended_us is not None and bool(transfer.route) and transfer.size_MB > 0
+def _slowdowns(run: RunTrace) -> Iterator[float]:
+    """Yield each served transfer's time of byte service over that on an idle route.
 
-
-def _slowdown(transfer: RunTransfer, run: RunTrace) -> float:
-    """Return a served transfer's time of byte service over that on an idle route."""
-    took_us = (transfer.ended_us or 0) - (transfer.started_us or 0)
-    alone_us = transfer.size_MB / run.solo_MBps(transfer) * MICROSECONDS_PER_SECOND
-    return took_us / alone_us
+    An idle route takes a microsecond at least, as all times are whole ones; a transfer that took
+    none is left out.
+    """
+    for transfer in run.transfers:
+        took_us = (transfer.ended_us or 0) - (transfer.started_us or 0)
+        if took_us > 0 and transfer.ended_us is not None and transfer.size_MB > 0:
+            alone_us = transfer.size_MB / run.solo_MBps(transfer) * MICROSECONDS_PER_SECOND
+            yield took_us / max(1.0, alone_us)
 
 
 def _dag_rows(run: RunTrace) -> list[dict[str, object]]:

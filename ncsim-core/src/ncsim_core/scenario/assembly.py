@@ -4,7 +4,6 @@ Clean rates are decided here, once, before any snapshot or route.
 """
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -17,6 +16,7 @@ from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkRates, Network
 from ncsim_core.registry import Registry, get_registry
 from ncsim_core.scenario.model import Scenario
+from ncsim_core.units import MAX_QUANTITY, is_quantity
 
 PURE: Final = "pure"
 """Capability of a routing model whose routes runs may share, whatever their seeds and sections."""
@@ -80,8 +80,9 @@ def link_rates_fault(rates: object, link_count: int) -> str | None:
         if len(values) != link_count:
             return f"{name} has {len(values)} values for {link_count} links"
         for index, value in enumerate(values):
-            if not (math.isfinite(value) and value >= 0):
-                return f"{name} of link index {index} is {value!r}; it must be finite, 0 or more"
+            if not is_quantity(value):
+                bounds = f"it must be from 0 to {MAX_QUANTITY:g}"
+                return f"{name} of link index {index} is {value!r}; {bounds}"
     return None
 
 

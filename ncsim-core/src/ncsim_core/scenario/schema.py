@@ -10,12 +10,14 @@ from typing import Any, TypeAlias
 from ncsim_core.plugins import KINDS, Kind
 from ncsim_core.registry import RegisteredComponent, Registry
 from ncsim_core.scenario.model import DEFAULT_SEED
+from ncsim_core.units import MAX_QUANTITY
 
 Schema: TypeAlias = dict[str, Any]
 
 MAX_INJECT_AT_s = 9_000_000_000
 """285 years: beyond, microseconds are no longer exact in the double of a JSON reader."""
 
+ID_PATTERN = r"^[^\x00-\x1f\x7f]+(?![\x00-\x1f])$"
 QUALIFIED_NAME = r"^[a-z0-9][a-z0-9._-]*/[a-z][a-z0-9_]*$"
 
 
@@ -58,7 +60,7 @@ def _number(description: str, **bounds: object) -> Schema:
 _ID: Schema = {
     "type": "string",
     "description": "A name of at least one character. Ids compare as text: n10 comes before n2.",
-    "pattern": r"^[^\x00-\x1f\x7f]+(?![\x00-\x1f])$",
+    "pattern": ID_PATTERN,
 }
 
 
@@ -92,7 +94,9 @@ def _node() -> Schema:
     position = _object({"x": _number("East, m."), "y": _number("North, m.")}, required=["x", "y"])
     properties = {
         "id": _id("Unique name of the node."),
-        "compute_capacity": _number("Compute units per second, above 0.", exclusiveMinimum=0),
+        "compute_capacity": _number(
+            "Compute units per second, above 0.", exclusiveMinimum=0, maximum=MAX_QUANTITY
+        ),
         "position": {"description": "Where the node's radio is, m.", **position},
     }
     return _object(properties, required=["id", "compute_capacity"])
@@ -106,8 +110,11 @@ def _link() -> Schema:
         "bandwidth": _number(
             "Clean bandwidth, MB/s. A link model that derives rates from positions can do without.",
             minimum=0,
+            maximum=MAX_QUANTITY,
         ),
-        "latency": _number("Paid once per transfer and hop, s.", minimum=0, default=0.0),
+        "latency": _number(
+            "Paid once per transfer and hop, s.", minimum=0, maximum=MAX_QUANTITY, default=0.0
+        ),
         "medium": {
             "description": "wired takes the link out of every radio model.",
             "enum": ["wireless", "wired"],
@@ -132,7 +139,7 @@ def _dag() -> Schema:
 def _task() -> Schema:
     properties = {
         "id": _id("Name of the task, unique within its DAG."),
-        "compute_cost": _number("Compute units.", minimum=0),
+        "compute_cost": _number("Compute units.", minimum=0, maximum=MAX_QUANTITY),
         "pinned_to": _id("Id of the node that must run it; without, the scheduler chooses."),
     }
     return _object(properties, required=["id", "compute_cost"])
@@ -142,7 +149,7 @@ def _edge() -> Schema:
     properties = {
         "from": _id("Id of the task that produces the data."),
         "to": _id("Id of the task that waits for it."),
-        "data_size": _number("Payload, MB.", minimum=0),
+        "data_size": _number("Payload, MB.", minimum=0, maximum=MAX_QUANTITY),
     }
     return _object(properties, required=["from", "to", "data_size"])
 

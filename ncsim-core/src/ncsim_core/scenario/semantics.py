@@ -13,10 +13,8 @@ from ncsim_core.registry import Registry
 from ncsim_core.scenario.faults import Data, Path, Problem, path_text, shown
 from ncsim_core.scenario.model import Config
 from ncsim_core.scenario.resolution import NEEDS_RADIO, RADIO
-from ncsim_core.scenario.wording import Hints
+from ncsim_core.scenario.wording import Hints, cycle_text
 from ncsim_core.workflow import find_cycle
-
-MAX_TASKS_SHOWN = 20
 
 Row: TypeAlias = Mapping[str, Any]
 
@@ -133,15 +131,7 @@ def _cycle(edges: Mapping[tuple[str, str], Path]) -> Iterator[Problem]:
     tasks = find_cycle((task for ends in edges for task in ends), edges.keys())
     if tasks:
         path = max(edges[pair] for pair in pairwise(tasks))
-        yield Problem(path, f"the edges form a cycle: {_listed(tasks)}")
-
-
-def _listed(tasks: list[str]) -> str:
-    """Return the tasks of a cycle, a long one without its middle."""
-    if len(tasks) > MAX_TASKS_SHOWN:
-        half = MAX_TASKS_SHOWN // 2
-        tasks = [*tasks[:half], f"({len(tasks) - 2 * half} more)", *tasks[-half:]]
-    return " -> ".join(tasks)
+        yield Problem(path, f"the edges form a cycle: {cycle_text(tasks)}")
 
 
 def _unpinned(dags: list[tuple[Path, Row]]) -> Iterator[Problem]:

@@ -10,44 +10,21 @@ scientific workflow research and development" (2022), https://doi.org/10.1016/j.
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any, Final
+from typing import Final
 
-from ncsim_core.errors import ScenarioError
-from ncsim_core.scenario.faults import Data, Path, Problem, ScenarioFaults, path_text
+from ncsim_core.scenario.faults import Data, Problem, ScenarioFaults, path_text
 from ncsim_core.scenario.json_reader import RepeatedKeyError, json_positions, json_slips, read_json
 from ncsim_core.scenario.positions import Span
 from ncsim_core.scenario.source import Source, read_source
-from ncsim_core.scenario.wording import did_you_mean, worded
+from ncsim_core.scenario.wfcommons_form import carried_files, workflow_problems, writers_of
 from ncsim_core.workflow import DAG, DagId, Dependency, Task, TaskId
 
 BYTES_PER_MB: Final = 1_000_000
 UNITS_PER_S: Final = 100.0
 """Speed of the machine on which run times were measured, if nobody says otherwise."""
-
-_SPECIFICATION: Final[Path] = ("workflow", "specification")
-_ID: Final = {"type": "string", "minLength": 1}
-_IDS: Final = {"type": "array", "items": _ID}
-_AMOUNT: Final = {"type": "number", "minimum": 0}
-
-
-def _rows(required: Mapping[str, Data], optional: Mapping[str, Data]) -> Data:
-    row = {"type": "object", "required": list(required), "properties": {**required, **optional}}
-    return {"type": "array", "items": row}
-
-
-def _object(**properties: Data) -> Data:
-    return {"type": "object", "required": list(properties), "properties": properties}
-
-
-_LISTS: Final = {"children": _IDS, "inputFiles": _IDS, "outputFiles": _IDS}
-_SPECIFIED: Final = _object(tasks=_rows({"id": _ID, "parents": _IDS}, _LISTS)) | {}
-_SPECIFIED["properties"]["files"] = _rows({"id": _ID, "sizeInBytes": _AMOUNT}, {})
-_EXECUTED: Final = _object(tasks=_rows({"id": _ID, "runtimeInSeconds": _AMOUNT}, {}))
-SCHEMA: Final = _object(workflow=_object(specification=_SPECIFIED, execution=_EXECUTED))
-"""What is read of a workflow (draft-07); everything else in the file is passed over."""
 
 
 @dataclass(frozen=True)
@@ -78,19 +55,15 @@ def read_workflow(
         dag_id: Id of the DAG; by default the workflow's name.
 
     Raises:
-        ScenarioFaults: It is no such file; all faults are listed.
-        ScenarioError: The dependencies form a cycle.
+        ScenarioFaults: It is no such file, or its dependencies form a cycle; all faults are listed.
     """
     source = read_source(path)
     document = _read(source)
-    problems = list(_form_problems(document)) or list(_reference_problems(document))
+    problems = workflow_problems(document, units_per_s)
     if problems:
         raise _located(problems, source)
-    name = str(document.get("name") or path.stem)
-    try:
-        return _imported(document["workflow"], name, dag_id or name, units_per_s)
-    except ScenarioError as error:
-        raise ScenarioError(f"{path}: {error}") from error
+    name = document.get("name") or path.stem
+    return _imported(document["workflow"], name, dag_id or name, units_per_s)
 
 
 def _read(source: Source) -> Data:
@@ -105,65 +78,6 @@ def _read(source: Source) -> Data:
         raise ScenarioFaults(faults) from None
     except RecursionError:
         raise source.lone_fault("nested too deep", Span(1, 1)) from None
-
-
-def _form_problems(document: Data) -> Iterator[Problem]:
-    """Yield in what the document is no workflow of a version that is read here."""
-    from jsonschema import Draft7Validator
-
-    workflow = document.get("workflow") if isinstance(document, dict) else None
-    if isinstance(workflow, dict) and "tasks" in workflow and "specification" not in workflow:
-        version = document.get("schemaVersion", "before 1.5")
-        message = f"is of format {version}; 1.5 and 1.6 are read (workflow.specification)"
-        yield Problem(("workflow",), message)
-        return
-    for error in Draft7Validator(SCHEMA).iter_errors(document):
-        yield from worded(tuple(error.absolute_path), error)
-
-
-def _reference_problems(document: Data) -> Iterator[Problem]:
-    """Yield ids that are given twice, and names of tasks and files that are nowhere given."""
-    specification = document["workflow"]["specification"]
-    tasks = specification["tasks"]
-    yield from _repeated(tasks, (*_SPECIFICATION, "tasks"), "task")
-    yield from _repeated(specification.get("files", []), (*_SPECIFICATION, "files"), "file")
-    task_ids = {task["id"] for task in tasks}
-    file_ids = {file["id"] for file in specification.get("files", [])}
-    for index, task in enumerate(tasks):
-        for key, known, noun in (
-            ("parents", task_ids, "task"),
-            ("children", task_ids, "task"),
-            ("inputFiles", file_ids, "file"),
-            ("outputFiles", file_ids, "file"),
-        ):
-            for place, name in enumerate(task.get(key, [])):
-                if name not in known:
-                    path = (*_SPECIFICATION, "tasks", index, key, place)
-                    meant = did_you_mean(name, known)
-                    yield Problem(path, f"no {noun} {name!r}", name, meant)
-    yield from _run_time_problems(document, task_ids)
-
-
-def _run_time_problems(document: Data, task_ids: set[str]) -> Iterator[Problem]:
-    path: Path = ("workflow", "execution", "tasks")
-    measured = document["workflow"]["execution"]["tasks"]
-    yield from _repeated(measured, path, "run time of task")
-    for index, row in enumerate(measured):
-        if row["id"] not in task_ids:
-            yield Problem((*path, index, "id"), f"no task {row['id']!r}", row["id"])
-    timed = {row["id"] for row in measured}
-    for index, task in enumerate(document["workflow"]["specification"]["tasks"]):
-        if task["id"] not in timed:
-            message = f"task {task['id']!r} has no run time in workflow.execution.tasks"
-            yield Problem((*_SPECIFICATION, "tasks", index), message)
-
-
-def _repeated(rows: list[Data], path: Path, noun: str) -> Iterator[Problem]:
-    seen: set[str] = set()
-    for index, row in enumerate(rows):
-        if row["id"] in seen:
-            yield Problem((*path, index, "id"), f"{noun} {row['id']!r} is given twice", row["id"])
-        seen.add(row["id"])
 
 
 def _located(problems: list[Problem], source: Source) -> ScenarioFaults:
@@ -182,53 +96,27 @@ def _located(problems: list[Problem], source: Source) -> ScenarioFaults:
 
 
 def _imported(workflow: Data, name: str, dag_id: str, units_per_s: float) -> ImportedWorkflow:
-    rows = workflow["specification"]["tasks"]
-    size_bytes = {
-        file["id"]: file["sizeInBytes"] for file in workflow["specification"].get("files", [])
-    }
+    tasks = workflow["specification"]["tasks"]
     run_time_s = {row["id"]: row["runtimeInSeconds"] for row in workflow["execution"]["tasks"]}
-    writers: dict[str, list[str]] = {}
-    for row in rows:
-        for file in row.get("outputFiles", []):
-            writers.setdefault(file, []).append(row["id"])
+    files = workflow["specification"].get("files", [])
+    size_bytes = {file["id"]: file["sizeInBytes"] for file in files}
+
+    def size_MB(names: Iterable[str]) -> float:
+        return float(sum(size_bytes[name] for name in names) / BYTES_PER_MB)
+
     dag = DAG(
         DagId(dag_id),
-        tuple(Task(TaskId(row["id"]), run_time_s[row["id"]] * units_per_s) for row in rows),
+        tuple(Task(TaskId(each["id"]), run_time_s[each["id"]] * units_per_s) for each in tasks),
         tuple(
-            Dependency(
-                TaskId(parent),
-                TaskId(child),
-                sum(size_bytes[file] for file in files) / BYTES_PER_MB,
-            )
-            for (parent, child), files in _carried(rows, writers).items()
+            Dependency(TaskId(parent), TaskId(child), size_MB(carried))
+            for (parent, child), carried in carried_files(tasks).items()
         ),
     )
-    read = {file for row in rows for file in row.get("inputFiles", [])}
+    written = writers_of(tasks).keys()
+    read = {file for each in tasks for file in each.get("inputFiles", [])}
     return ImportedWorkflow(
         name,
         dag,
-        sum(size_bytes[file] for file in size_bytes if file in read - writers.keys())
-        / BYTES_PER_MB,
-        sum(size_bytes[file] for file in size_bytes if file in writers.keys() - read)
-        / BYTES_PER_MB,
+        external_MB=size_MB(name for name in size_bytes if name in read - written),
+        unread_MB=size_MB(name for name in size_bytes if name in written - read),
     )
-
-
-def _carried(
-    rows: list[Mapping[str, Any]], writers: Mapping[str, list[str]]
-) -> dict[tuple[str, str], dict[str, None]]:
-    """Return the files on each dependency: those of named parents and children, then others."""
-    children: dict[str, list[str]] = {}
-    for row in rows:
-        for child in row.get("children", []):
-            children.setdefault(child, []).append(row["id"])
-    carried: dict[tuple[str, str], dict[str, None]] = {}
-    for row in rows:
-        child = row["id"]
-        for parent in (*row["parents"], *children.get(child, [])):
-            carried.setdefault((parent, child), {})
-        for file in row.get("inputFiles", []):
-            for writer in writers.get(file, []):
-                if writer != child:
-                    carried.setdefault((writer, child), {})[file] = None
-    return carried

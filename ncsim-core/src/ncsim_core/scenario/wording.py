@@ -1,17 +1,21 @@
 """Schema errors in the words of the user: what is wrong, and what was probably meant."""
 
 import difflib
+import math
 import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
 from ncsim_core.scenario.faults import Path, Problem, shown
+from ncsim_core.units import MAX_QUANTITY
 
 Finding: TypeAlias = Any
 """A ``jsonschema.ValidationError``, whose fields depend on the keyword that failed."""
 
 MAX_COMPARISONS = 20_000
 """Names that are compared with unknown ones; each costs some 20 us."""
+
+MAX_TASKS_SHOWN = 20
 
 _TYPE_WORDS = {
     "object": "a mapping",
@@ -59,6 +63,14 @@ class Hints:
         """Return the name that was probably meant by ``word``, ``None`` for the later words."""
         self._words_left -= 1
         return did_you_mean(word, self._names) if self._words_left >= 0 else None
+
+
+def cycle_text(tasks: list[str]) -> str:
+    """Return the tasks of a cycle in one line, those of a long one without its middle."""
+    if len(tasks) > MAX_TASKS_SHOWN:
+        half = MAX_TASKS_SHOWN // 2
+        tasks = [*tasks[:half], f"({len(tasks) - 2 * half} more)", *tasks[-half:]]
+    return " -> ".join(tasks)
 
 
 def _unknown_keys(path: Path, error: Finding) -> Iterable[Problem]:
@@ -128,7 +140,10 @@ def _not_a_choice(path: Path, error: Finding) -> Iterable[Problem]:
 
 def _out_of_bounds(path: Path, error: Finding) -> Iterable[Problem]:
     words = _BOUND_WORDS[str(error.validator)]
-    message = f"must be {words} {error.validator_value}, not {shown(error.instance)}"
+    wanted = f"{words} {error.validator_value}"
+    if error.instance == math.inf and error.validator_value == MAX_QUANTITY:
+        wanted = "a finite number"
+    message = f"must be {wanted}, not {shown(error.instance)}"
     yield Problem(path, message, shown(error.instance))
 
 

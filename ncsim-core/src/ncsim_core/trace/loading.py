@@ -129,6 +129,7 @@ def _enter_transfer(
             builder.end_transfer(transfer, at_us)
         case RatesAssigned():
             for transfer, step in rate_steps(record):
+                _expect_on_route(step.bottleneck, transfer, builder)
                 builder.add_step(transfer, step)
 
 
@@ -138,6 +139,11 @@ def _expect_usable(route: list[int], builder: RunBuilder) -> None:
     for link in route:
         if builder.preamble.links[link].bandwidth_MBps <= 0:
             raise ValueError(f"xstart: link {link} of the route has no bandwidth")
+
+
+def _expect_on_route(link: int, transfer: int, builder: RunBuilder) -> None:
+    if link not in builder.route[transfer]:
+        raise ValueError(f"recalc: bottleneck {link} is not on the route of transfer {transfer}")
 
 
 def rate_steps(record: RatesAssigned) -> Iterator[tuple[int, RateStep]]:

@@ -5,7 +5,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from ncsim_core.units import MAX_QUANTITY
+
 MAX_SHOWN_CHARACTERS: Final = 60
+MAX_COUNT: Final = 2**63 - 1
 
 
 @dataclass(frozen=True)
@@ -30,13 +33,13 @@ def shown(value: object) -> str:
 
 
 def is_count(value: object) -> bool:
-    """Return whether a value is a whole number of 0 or more (and no boolean)."""
-    return type(value) is int and value >= 0
+    """Return whether a value is a whole number of 0 or more, of 63 bits (and no boolean)."""
+    return type(value) is int and 0 <= value <= MAX_COUNT
 
 
 def is_quantity(value: object) -> bool:
-    """Return whether a value is a finite number of 0 or more (and no boolean)."""
-    return (type(value) is float or type(value) is int) and value >= 0 and _is_finite(value)
+    """Return whether a value is a number from 0 to ``MAX_QUANTITY`` (and no boolean)."""
+    return (type(value) is float or type(value) is int) and 0 <= value <= MAX_QUANTITY
 
 
 def is_number(value: object) -> bool:
@@ -78,8 +81,8 @@ def _is_cause(value: object) -> bool:
     return _row_of(lambda change: change in ("s", "e"), is_count)(value)
 
 
-_COUNT_SCHEMA: Final = {"type": "integer", "minimum": 0}
-_QUANTITY_SCHEMA: Final = {"type": "number", "minimum": 0}
+_COUNT_SCHEMA: Final = {"type": "integer", "minimum": 0, "maximum": MAX_COUNT}
+_QUANTITY_SCHEMA: Final = {"type": "number", "minimum": 0, "maximum": MAX_QUANTITY}
 _TEXT_SCHEMA: Final = {"type": "string"}
 _POSITION_SCHEMA: Final = {"type": ["number", "null"]}
 
@@ -101,9 +104,9 @@ COUNT: Final = Shape("a whole number, 0 or more", is_count, _COUNT_SCHEMA)
 COUNT_OR_NULL: Final = Shape(
     "a whole number, 0 or more, or null",
     _or_null(is_count),
-    {"type": ["integer", "null"], "minimum": 0},
+    {"type": ["integer", "null"], "minimum": 0, "maximum": MAX_COUNT},
 )
-QUANTITY: Final = Shape("a finite number, 0 or more", is_quantity, _QUANTITY_SCHEMA)
+QUANTITY: Final = Shape(f"a number from 0 to {MAX_QUANTITY:g}", is_quantity, _QUANTITY_SCHEMA)
 TEXT: Final = Shape("a text", _is_text, _TEXT_SCHEMA)
 ANYTHING: Final = Shape("any value", lambda _: True, {})
 COUNTS: Final = Shape(
@@ -112,7 +115,7 @@ COUNTS: Final = Shape(
     {"type": "array", "items": _COUNT_SCHEMA},
 )
 QUANTITIES: Final = Shape(
-    "a list of finite numbers, 0 or more",
+    f"a list of numbers from 0 to {MAX_QUANTITY:g}",
     _list_of(is_quantity),
     {"type": "array", "items": _QUANTITY_SCHEMA},
 )
