@@ -105,3 +105,34 @@ def test_a_short_run_does_not_import_numba():
         capture_output=True, text=True, check=True, env=os.environ | {"NCSIM_PURE": ""},
     )  # fmt: skip
     assert done.stdout == "False\n"
+
+
+SPATIAL_TRACE = """
+import sys
+from ncsim_core.api import prepare
+from ncsim_core.generators.paper import paper_dag, paper_grid
+from ncsim_core.scenario.making import make_scenario
+from ncsim_core.trace.writer import TraceWriter
+config = {"scheduler": "round_robin", "routing": "widest_path", "interference": "csma_spatial"}
+scenario = make_scenario("run", paper_grid(4), [paper_dag(10)], config)
+prepare(scenario, observers=[TraceWriter(sys.stdout)]).run()
+sys.stderr.write(f"numba={'numba' in sys.modules}")
+"""
+
+
+def spatial_trace(first_line, **environment):
+    code = first_line + SPATIAL_TRACE
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, env=os.environ | environment, capture_output=True, check=True)
+    return done.stdout, done.stderr.decode()
+
+
+@needs_numba
+def test_csma_spatial_leaves_the_same_trace_with_arrays_and_with_compiled_loops():
+    pure, said = spatial_trace("", NCSIM_PURE="1")
+    assert said == "numba=False"
+
+    compiled, said = spatial_trace("import numba", NCSIM_PURE="")
+    assert said == "numba=True"
+
+    assert pure == compiled

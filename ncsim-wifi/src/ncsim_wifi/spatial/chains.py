@@ -12,6 +12,7 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
+from ncsim_wifi.spatial.sums import row_sums
 
 BOUNDARY = 2 * STAGES - 1
 DIAGONALS = [
@@ -85,11 +86,16 @@ def chain_rates(one: SideRates, two: SideRates) -> ChainRates:
     )
 
 
+def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
+    """Return the time-weighted distribution P(a, b) of each chain, shape (chains, 7, 7)."""
+    return stationary(chain_rates(one, two))
+
+
 def stationary(rates: ChainRates) -> FloatArray:
     """Return the time-weighted distribution P(a, b) of each chain, shape (chains, 7, 7).
 
-    Interior states follow from the 13 states with a = 0 or b = 0 by forward substitution;
-    balance of these and normalisation give a small system.
+    Interior states follow from the 13 states with a = 0 or b = 0 by forward substitution; what
+    flows among these, directly or through the interior, is a chain of 13 states.
 
     Source: MODEL 3.10.
     """
@@ -98,15 +104,35 @@ def stationary(rates: ChainRates) -> FloatArray:
     out += by_state.loss_a
     out += by_state.loss_b
     spread = _by_boundary(by_state, out)
-    residual = _boundary_inflow(by_state, spread)
-    each = np.arange(BOUNDARY)
-    residual[each, :, each] -= np.concatenate([out[0], out[1:, 0]])[..., 0]
-    residual[-1] = spread.sum(axis=(0, 1))
-    right = np.zeros((len(rates.common), BOUNDARY, 1))
-    right[:, -1] = 1.0
-    boundary = np.linalg.solve(residual.transpose(1, 0, 2), right)[..., 0]
-    joint = np.maximum(0.0, (spread * boundary).sum(axis=3).transpose(2, 0, 1))
-    return np.asarray(joint / joint.sum(axis=(1, 2), keepdims=True))
+    boundary = eliminated(_boundary_inflow(by_state, spread).transpose(2, 0, 1))
+    joint = row_sums(spread * boundary.T).transpose(2, 0, 1)
+    totals = row_sums(joint.reshape(len(joint), -1))
+    return np.asarray(joint / totals[:, None, None])
+
+
+def eliminated(flow: FloatArray) -> FloatArray:
+    """Return stationary distributions, up to a factor, by eliminating states from the last on.
+
+    Nothing is subtracted, so that small probabilities are as accurate as large ones.
+
+    Source: Grassmann, Taksar and Heyman (1985), Operations Research 33.
+
+    Args:
+        flow: Rate from one state to another, shape (states from, states to, chains).
+
+    Returns:
+        Shape (states, chains).
+    """
+    flow = flow.copy()
+    for last in range(len(flow) - 1, 0, -1):
+        leaves = np.add.accumulate(flow[last, :last], axis=0)[-1]
+        flow[:last, last] /= leaves
+        flow[:last, :last] += flow[:last, last, None] * flow[last, None, :last]
+    result = np.ones((len(flow), flow.shape[2]))
+    for state in range(1, len(flow)):
+        inflow = result[:state] * flow[:state, state]
+        result[state] = np.add.accumulate(inflow, axis=0)[-1]
+    return result
 
 
 def _by_boundary(rates: ChainRates, out: FloatArray) -> FloatArray:
@@ -138,15 +164,17 @@ def _into_interior(rate: FloatArray, out: FloatArray, step: tuple[int, int]) -> 
 
 
 def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:
-    """Return what flows into the boundary states, shape (13, chains, 13)."""
+    """Return the rates into boundary states, by that and by that of origin, (13, chains, 13)."""
     last = STAGES - 1
     inflow = np.zeros((BOUNDARY, *spread.shape[2:]))
     top = inflow[:STAGES]  # states (0, b)
-    top += (rates.success_a * spread).sum(axis=0)
+    side = np.zeros_like(top)  # states (a, 0)
+    for stage in range(STAGES):
+        top += rates.success_a[stage] * spread[stage]
+        side += rates.success_b[:, stage] * spread[:, stage]
     top += rates.loss_a[last] * spread[last]
     top[1:] += rates.loss_b[0, :-1] * spread[0, :-1]
     top[1:] += rates.common[last, :-1] * spread[last, :-1]
-    side = (rates.success_b * spread).sum(axis=1)  # states (a, 0)
     side += rates.loss_b[:, last] * spread[:, last]
     side[1:] += rates.loss_a[:-1, 0] * spread[:-1, 0]
     side[1:] += rates.common[:-1, last] * spread[:-1, last]

@@ -15,7 +15,10 @@ import numpy as np
 from ncsim_wifi.mac.timing import SLOT_us
 from ncsim_wifi.quantities import BoolArray, FloatArray
 from ncsim_wifi.spatial.attempts import GAUSS_AT, GAUSS_WEIGHT
-from ncsim_wifi.spatial.backoff import WINDOWS
+from ncsim_wifi.spatial.backoff import LONGEST_COUNTS, STAGES, WINDOWS
+from ncsim_wifi.spatial.sums import row_sums
+
+NEARLY_ONE = 1.0 - 1e-4  # attempt probabilities are 0.002 or more, or 0
 
 
 class CounterLaw(NamedTuple):
@@ -47,25 +50,40 @@ def counter_law(share: FloatArray, others: FloatArray) -> CounterLaw:
     return CounterLaw((2.0 - share) / WINDOWS, (1.0 - share) / WINDOWS**2, others[:, None])
 
 
-def power_sums(base: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def window_powers(base: FloatArray) -> FloatArray:
+    """Return y^W of each window by squaring, shape (relations, 7)."""
+    power = base
+    for _ in range(4):
+        power = power * power
+    powers = np.empty((len(base), STAGES))
+    for stage in range(STAGES):
+        powers[:, stage] = power
+        power = power * power
+    return powers
+
+
+def power_sums(
+    base: FloatArray, last: FloatArray, beyond: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the sums over n = 0..last of y^n, n y^n and n^2 y^n, for y up to 1.
 
-    >>> [float(s) for s in power_sums(np.array(1.0), np.array(3.0))]
+    Args:
+        base: y.
+        last: The last n.
+        beyond: y^(last + 1).
+
+    >>> [float(s) for s in power_sums(np.array(1.0), np.array(3.0), np.array(1.0))]
     [4.0, 6.0, 14.0]
     """
-    is_one = base > 1.0 - 1e-4  # attempt probabilities are 0.002 or more, or 0
-    of_one = last + 1.0, last * (last + 1.0) / 2.0, last * (last + 1.0) * (2.0 * last + 1.0) / 6.0
-    if is_one.all():
-        return of_one
+    is_one = base > NEARLY_ONE
     y = np.where(is_one, 0.5, base)
-    tail = y ** (last + 1.0)
-    zeroth = (1.0 - tail) / (1.0 - y)
-    first = (zeroth - 1.0 - last * tail) / (1.0 - y)
-    second = (2.0 * first - zeroth + 1.0 - last**2 * tail) / (1.0 - y)
+    zeroth = (1.0 - beyond) / (1.0 - y)
+    first = (zeroth - 1.0 - last * beyond) / (1.0 - y)
+    second = (2.0 * first - zeroth + 1.0 - last * last * beyond) / (1.0 - y)
     return (
-        np.where(is_one, of_one[0], zeroth),
-        np.where(is_one, of_one[1], first),
-        np.where(is_one, of_one[2], second),
+        np.where(is_one, last + 1.0, zeroth),
+        np.where(is_one, last * (last + 1.0) / 2.0, first),
+        np.where(is_one, last * (last + 1.0) * (2.0 * last + 1.0) / 6.0, second),
     )
 
 
@@ -74,8 +92,36 @@ def mean_remaining_count(law: CounterLaw) -> FloatArray:
 
     Source: MODEL 3.8, the sum of S_k(n) over n >= 1.
     """
-    zeroth, first, second = power_sums(law.others, WINDOWS - 1.0)
+    zeroth, first, second = power_sums(law.others, LONGEST_COUNTS, window_powers(law.others[:, 0]))
     return zeroth - 1.0 - law.linear * first + law.square * second
+
+
+class Interferers(NamedTuple):
+    """The stations that relations are with, as their links meet them; shape (relations,).
+
+    Args:
+        share: phi_k, probability that the station itself has just sent, shape (relations, 7).
+        others: y_o, probability that no other of its group starts in a slot.
+        stages: q_j(k), share of its attempts in each stage, shape (relations, 7).
+        busy_us: Mean time that a frame of its group keeps others from counting.
+        spare_us: Mean time that its members wait longer than others after their frames.
+        sum_on: How much of the time the group is on.
+        neighbour_us: T_nb, mean time on the air of what it senses.
+        on_air_us: T, how long one of its frames is on.
+        overhead_us: ovh, from the end of data until it may count.
+        after_us: ov, the part of a gap that is not counted down.
+    """
+
+    share: FloatArray
+    others: FloatArray
+    stages: FloatArray
+    busy_us: FloatArray
+    spare_us: FloatArray
+    sum_on: FloatArray
+    neighbour_us: FloatArray
+    on_air_us: FloatArray
+    overhead_us: FloatArray
+    after_us: FloatArray
 
 
 @dataclass(frozen=True)
@@ -101,6 +147,31 @@ class Gaps:
     count_us: FloatArray
     interrupted: FloatArray
     longest_us: float
+
+    @classmethod
+    def of(cls, met: Interferers, longest_us: float) -> "Gaps":
+        """Return the gaps that interferers leave.
+
+        Args:
+            met: The interferers.
+            longest_us: The longest window asked about.
+        """
+        law = counter_law(met.share, met.others)
+        mean_count = mean_remaining_count(law)
+        counts = row_sums(met.stages * mean_count)
+        counting_us = met.busy_us * (1.0 / met.sum_on - 1.0) - met.spare_us
+        count_us = np.maximum(SLOT_us, counting_us / counts)
+        interrupted = (count_us - SLOT_us) / (met.neighbour_us - SLOT_us)
+        return cls(
+            law,
+            mean_count,
+            met.on_air_us,
+            met.after_us,
+            met.overhead_us,
+            count_us,
+            np.minimum(np.maximum(interrupted, 0.0), 1.0),
+            longest_us,
+        )
 
     @cached_property
     def mean_us(self) -> FloatArray:
@@ -142,7 +213,7 @@ class Gaps:
             window_us: v, shape (windows, relations, 1).
         """
         room_us = window_us - self.after_us[:, None]
-        last = np.minimum(np.floor(room_us / SLOT_us), WINDOWS - 1.0)
+        last = np.minimum(np.floor(room_us / SLOT_us), LONGEST_COUNTS)
         count = self._moments.shape[1] // len(self.after_us)
         rows = np.arange(0, self._moments.shape[1], count)[:, None]
         at = rows + np.maximum(last, 0.0).astype(np.int64)
@@ -153,16 +224,53 @@ class Gaps:
         some = last >= 0.0
         return np.where(some, ends, 0.0), np.where(some, room_us * ends - SLOT_us * counted, 0.0)
 
-    def room_us(self, window_us: FloatArray) -> FloatArray:
-        """Return E_k(v) = E(gap - v)^+, the room for starting a window in a gap.
 
-        Source: MODEL 3.8.
+class Windows(NamedTuple):
+    """Windows that a frame of an interferer must not begin in.
 
-        Args:
-            window_us: v, shape (relations,).
-        """
-        spare_us = self.short(window_us[None, :, None])[1][0]
-        return np.asarray(np.maximum(0.0, self.mean_us - window_us[:, None] + spare_us))
+    Args:
+        left_us: V_r, and what is left of it when a random lethal length is borne, three times;
+            under RTS/CTS also the window in which the receiver must be free, shape (4 or 5,
+            relations).
+        borne_us: These three lengths, shape (3, relations).
+        immune: Part of frames that any overlap leaves alive, exp(-h).
+        is_strong: Whether an interferer that is on at the start kills whatever the overlap.
+        before: al, how likely the sender begins while the interferer is on.
+        during: be, how likely the interferer begins while the sender is on.
+        longest_us: The longest window.
+    """
+
+    left_us: FloatArray
+    borne_us: FloatArray
+    immune: FloatArray
+    is_strong: BoolArray
+    before: FloatArray
+    during: FloatArray
+    longest_us: float
+
+
+def windows_of(
+    window_us: FloatArray, protected_us: FloatArray, hazard: FloatArray, immune: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return windows that are left when a random part of the payload may be overlapped.
+
+    A frame dies once the overlapped part of its payload reaches a random length, which the
+    hazard gives; three Gauss points stand for it.
+
+    Source: MODEL 3.8, X_i.
+
+    Args:
+        window_us: V_r, shape (relations,).
+        protected_us: V_p of the link.
+        hazard: h_r.
+        immune: exp(-h_r).
+
+    Returns:
+        The windows, shape (4, relations), and the lengths, shape (3, relations).
+    """
+    lethal = -np.log1p(-GAUSS_AT[:, None] * (1.0 - immune)) / hazard
+    borne_us = np.minimum(1.0, lethal) * protected_us
+    return np.concatenate([window_us[None], window_us - borne_us]), borne_us
 
 
 class Survival(NamedTuple):
@@ -171,46 +279,44 @@ class Survival(NamedTuple):
     Args:
         survives: s_k, probability that the frame survives.
         missed: nohit_k, probability that no frame of the interferer overlaps it.
+        found_free: Probability that the receiver is free when asked by an RTS, if that counts.
     """
 
     survives: FloatArray
     missed: FloatArray
+    found_free: FloatArray
 
 
-def survival(
-    gaps: Gaps,
-    window_us: FloatArray,
-    protected_us: FloatArray,
-    hazard: FloatArray,
-    is_strong: BoolArray,
-) -> Survival:
+def survival(met: Interferers, windows: Windows) -> Survival:
     """Return what frames survive, partly overlapped ones included.
 
-    A frame dies once the overlapped part of its payload reaches a random length, which the
-    hazard gives; three Gauss points stand for it.
-
     Source: MODEL 3.8, nohit_k and s_k.
-
-    Args:
-        gaps: Gaps of the interferer's group.
-        window_us: V_r, shape (relations,).
-        protected_us: V_p of the link.
-        hazard: h_r.
-        is_strong: Whether an interferer that is on at the start kills whatever the overlap.
     """
-    immune = np.exp(-hazard)
-    lethal = -np.log1p(-GAUSS_AT[:, None] * (1.0 - immune)) / hazard
-    borne_us = np.zeros((4, len(hazard), 1))  # nothing, and three random lengths
-    borne_us[1:, :, 0] = np.minimum(1.0, lethal) * protected_us
-    left_us = window_us[:, None] - borne_us
+    gaps = Gaps.of(met, windows.longest_us)
+    left_us = windows.left_us[:, :, None]
     ends, spare_us = gaps.short(left_us)
     room_us = np.maximum(0.0, gaps.mean_us - left_us + spare_us)
-    missed = room_us[0] / gaps.cycle_us
-    full = np.where(is_strong[:, None], gaps.mean_us / gaps.cycle_us, 1.0)
-    partly_us = np.where(is_strong[:, None], 0.0, borne_us * (1.0 - ends))
-    partly = np.minimum((room_us + partly_us) / gaps.cycle_us, full)
-    weights = (1.0 - immune) * GAUSS_WEIGHT[:, None]
-    survives = immune[:, None] * full
-    for weight, part in zip(weights, partly[1:], strict=True):
+    is_strong = windows.is_strong[:, None]
+    full = np.where(is_strong, gaps.mean_us / gaps.cycle_us, 1.0)
+    partly_us = np.where(is_strong, 0.0, windows.borne_us[:, :, None] * (1.0 - ends[1:4]))
+    partly = np.minimum((room_us[1:4] + partly_us) / gaps.cycle_us, full)
+    weights = (1.0 - windows.immune) * GAUSS_WEIGHT[:, None]
+    survives = windows.immune[:, None] * full
+    for weight, part in zip(weights, partly, strict=True):
         survives = survives + weight[:, None] * part
-    return Survival(survives, missed)
+    on_part = gaps.on_air_us[:, None] / gaps.cycle_us
+    gates = windows.before[:, None], windows.during[:, None]
+    return Survival(
+        gated(survives, on_part, *gates),
+        gated(room_us[0] / gaps.cycle_us, on_part, *gates),
+        room_us[-1] / gaps.cycle_us,
+    )
+
+
+def gated(
+    survives: FloatArray, on_part: FloatArray, before: FloatArray, during: FloatArray
+) -> FloatArray:
+    """Return survival when summed power keeps the two apart part of the time (MODEL 3.8)."""
+    at_start = np.minimum(1.0 - survives, on_part)
+    lost = at_start * before + (1.0 - survives - at_start) * during
+    return np.asarray(1.0 - lost / np.maximum(1.0 - on_part * (1.0 - before), 1e-9))

@@ -3,11 +3,13 @@
 Source: MODEL 3.9 and 3.10.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.chains import SideRates, chain_rates, stationary
+from ncsim_wifi.spatial.chains import SideRates
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 
@@ -65,6 +67,7 @@ class JointStages:
         own_part: FloatArray,
         relation: tuple[FloatArray, FloatArray, FloatArray],
         cycle_us: FloatArray,
+        joint_stages: Callable[[SideRates, SideRates], FloatArray],
     ) -> None:
         """Solve the chains anew and move towards the solution.
 
@@ -74,6 +77,7 @@ class JointStages:
             own_part: sbar_r(a), what of it is due to each relation.
             relation: s_b, hit_b and phi_b of each relation.
             cycle_us: cyc_u(k) of each station.
+            joint_stages: Solves the chains.
         """
         if not self.count:
             return
@@ -81,7 +85,7 @@ class JointStages:
         half = self.count
         cycles_us = cycle_us[self._station]
         one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
-        fresh = stationary(chain_rates(one, two))
+        fresh = joint_stages(one, two)
         gain = self._scene.settings.approximations.stage_gain
         self._joint = fresh if self._joint is None else gain * fresh + (1.0 - gain) * self._joint
         both = np.concatenate([self._joint, self._joint.transpose(0, 2, 1)])

@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us, SLOT_us
+from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.attempts import Exchange
-from ncsim_wifi.spatial.gaps import Gaps, counter_law, mean_remaining_count, survival
+from ncsim_wifi.spatial.forms import Forms
+from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, windows_of
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
@@ -143,18 +144,24 @@ def conditioned_on(
 
 
 def hidden_loss(
-    scene: Scene, statics: Statics, traffic: Traffic, gates: tuple[FloatArray, FloatArray]
+    scene: Scene,
+    statics: Statics,
+    traffic: Traffic,
+    gates: tuple[FloatArray, FloatArray],
+    forms: Forms,
 ) -> HiddenLoss:
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
     own, other = statics.own, hostile.station
     hazard = effective_hazard(scene, statics, traffic)
-    kill = np.where(hostile.is_strong, 1.0, -np.expm1(-hazard))
+    immune = np.exp(-hazard)
+    kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
     later = conditioned_on(statics.rivals, on, kill)
     state = _group_state(statics, traffic, later)
-    gaps = _gaps(scene, statics, traffic, kill, state)
-    survives, missed, answered = _fates(scene, statics, gaps, hazard, gates)
+    met = _interferers(scene, statics, traffic, kill, state)
+    windows = _windows(scene, statics, hazard, immune, gates)
+    survives, missed, answered = _fates(scene, statics, forms.survival(met, windows))
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / np.add.reduce(time, axis=1, keepdims=True)
@@ -187,34 +194,36 @@ def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "Grou
     )
 
 
-def _fates(
+def _windows(
     scene: Scene,
     statics: Statics,
-    gaps: Gaps,
     hazard: FloatArray,
+    immune: FloatArray,
     gates: tuple[FloatArray, FloatArray],
+) -> Windows:
+    """Return the windows in which interferers must not begin (MODEL 3.8)."""
+    hostile = statics.hostile
+    protected_us = scene.protected_us[hostile.link]
+    left_us, borne_us = windows_of(statics.window_us, protected_us, hazard, immune)
+    if scene.settings.rts_cts:
+        left_us = np.concatenate([left_us, np.full_like(left_us[:1], CTS_NOTICED_us)])
+    longest_us = max(float(statics.window_us.max()), CTS_NOTICED_us)
+    return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, longest_us)
+
+
+def _fates(
+    scene: Scene, statics: Statics, found: Survival
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return s_k and nohit_k of each relation, and what part of RTS are answered."""
-    hostile = statics.hostile
-    result = survival(
-        gaps, statics.window_us, scene.protected_us[hostile.link], hazard, hostile.is_strong
-    )
-    on_part = gaps.on_air_us[:, None] / gaps.cycle_us
-    survives, missed = (_gated(each, on_part, *gates) for each in result)
     if not scene.settings.rts_cts:
-        return survives, missed, np.ones_like(survives)
+        return found.survives, found.missed, np.ones_like(found.survives)
     by_cts = statics.by_cts[:, None]
+    answered = np.where(statics.hostile.is_strong[:, None], found.found_free, 1.0)
     return (
-        np.where(by_cts, statics.by_cts_survives, survives),
-        np.where(by_cts, statics.by_cts_missed, missed),
-        np.where(by_cts, statics.by_cts_survives, _answered(statics, gaps)),
+        np.where(by_cts, statics.by_cts_survives, found.survives),
+        np.where(by_cts, statics.by_cts_missed, found.missed),
+        np.where(by_cts, statics.by_cts_survives, answered),
     )
-
-
-def _answered(statics: Statics, gaps: Gaps) -> FloatArray:
-    """Return what part of RTS find the receiver free, by stage of the interferer."""
-    room_us = gaps.room_us(np.full_like(gaps.after_us, CTS_NOTICED_us))
-    return np.where(statics.hostile.is_strong[:, None], room_us / gaps.cycle_us, 1.0)
 
 
 def _correction(
@@ -231,16 +240,6 @@ def _correction(
     return np.exp(np.bincount(hostile.link_of_group, logs, minlength=len(scene.links)))
 
 
-def _gated(
-    survives: FloatArray, on_part: FloatArray, before: FloatArray, during: FloatArray
-) -> FloatArray:
-    """Return survival when summed power keeps the two apart part of the time (MODEL 3.8)."""
-    before, during = before[:, None], during[:, None]
-    at_start = np.minimum(1.0 - survives, on_part)
-    lost = at_start * before + (1.0 - survives - at_start) * during
-    return np.asarray(1.0 - lost / np.maximum(1.0 - on_part * (1.0 - before), 1e-9))
-
-
 class GroupState(NamedTuple):
     """How active the group of each relation is: sum of A', phi_j, and phi_k by stage."""
 
@@ -249,31 +248,21 @@ class GroupState(NamedTuple):
     share: FloatArray
 
 
-def _gaps(
-    scene: Scene,
-    statics: Statics,
-    traffic: Traffic,
-    kill: FloatArray,
-    state: GroupState,
-) -> Gaps:
-    """Return the gaps between frames of the group of each relation (MODEL 3.8)."""
-    other = statics.hostile.station
-    times = traffic.times
-    others = _nobody_else_starts(statics.hostile, traffic)
-    sum_on, phi, share = state
-    law = counter_law(share, others)
-    busy_us = statics.hostile.group_sums(phi * times.busy_us[other])
-    spare_us = statics.hostile.group_sums(phi * (times.overhead_us - times.silent_us)[other])
-    counting_us = busy_us * (1.0 / sum_on - 1.0) - spare_us
-    mean_count = mean_remaining_count(law)
-    counts = np.add.reduce(traffic.stages[other] * mean_count, axis=1)
-    count_us = np.maximum(SLOT_us, counting_us / counts)
-    neighbour_us = _neighbour_busy_us(statics, traffic)[other]
-    interrupted = np.minimum(np.maximum((count_us - SLOT_us) / (neighbour_us - SLOT_us), 0.0), 1.0)
-    on_air_us, overhead_us, after_us = _seen_us(scene, statics, traffic, kill)
-    longest_us = float(statics.window_us.max())
-    return Gaps(
-        law, mean_count, on_air_us, after_us, overhead_us, count_us, interrupted, longest_us
+def _interferers(
+    scene: Scene, statics: Statics, traffic: Traffic, kill: FloatArray, state: GroupState
+) -> Interferers:
+    """Return the interferers of each relation as its link meets them (MODEL 3.8)."""
+    other, hostile, times = statics.hostile.station, statics.hostile, traffic.times
+    spare_us = (times.overhead_us - times.silent_us)[other]
+    return Interferers(
+        state.share,
+        _nobody_else_starts(hostile, traffic),
+        traffic.stages[other],
+        hostile.group_sums(state.phi * times.busy_us[other]),
+        hostile.group_sums(state.phi * spare_us),
+        state.sum_on,
+        _neighbour_busy_us(statics, traffic)[other],
+        *_seen_us(scene, statics, traffic, kill),
     )
 
 

@@ -23,6 +23,7 @@ from ncsim_wifi.spatial.backoff import (
 )
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.energy import gate, subset_weights
+from ncsim_wifi.spatial.forms import ARRAYS, Forms, forms_for
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
 from ncsim_wifi.spatial.joint import JointStages
 from ncsim_wifi.spatial.losses import (
@@ -53,7 +54,8 @@ def saturated_goodputs_MBps(plant: Plant, links: Sequence[int]) -> FloatArray:
     if not links:
         return np.zeros(0)
     in_order = plant.in_order(links)
-    solved = FixedPoint(scene_of(plant, in_order)).goodputs_MBps()
+    forms = forms_for(plant.settings.approximations.iterations)
+    solved = FixedPoint(scene_of(plant, in_order), forms).goodputs_MBps()
     by_link = dict(zip(in_order, solved.tolist(), strict=True))
     return np.array([by_link[link] for link in links])
 
@@ -63,10 +65,11 @@ class FixedPoint:
 
     Args:
         scene: The active links.
+        forms: Whether to work with arrays or with compiled loops, which makes no difference.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+    def __init__(self, scene: Scene, forms: Forms = ARRAYS) -> None:
+        self._scene, self._forms = scene, forms
         self._statics: Statics = statics_of(scene)
         self._joint = JointStages(scene, self._statics.hostile)
         links, stations = len(scene.links), scene.station_count
@@ -178,7 +181,7 @@ class FixedPoint:
         base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
-            hidden = hidden_loss(self._scene, statics, traffic, gates)
+            hidden = hidden_loss(self._scene, statics, traffic, gates, self._forms)
             base = base * self._partner_collisions(traffic, gates[1])
             base = base * self._ack_survival(traffic, hidden)
             success, parts = self._success(base, hidden, hidden.survives)
@@ -189,6 +192,7 @@ class FixedPoint:
                     parts,
                     (hidden.survives, hidden.hit, hidden.share),
                     traffic.cycle_us,
+                    self._forms.joint_stages,
                 )
                 success, _ = self._success(base, hidden, hidden.survives)
             self._learn_handshake(traffic, hidden)

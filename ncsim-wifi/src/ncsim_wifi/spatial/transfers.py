@@ -17,6 +17,7 @@ import numpy as np
 from ncsim_core.network import LinkIndex, Route
 
 from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.forms import forms_for
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.relay import clique_limits_MBps
 from ncsim_wifi.spatial.scene import scene_of
@@ -150,7 +151,7 @@ class _Coupled:
         self._paths, self._routes, self._on_air = paths, routes, on_air
         places = [paths.place[link] for link in on_air]
         self._scene = scene_of(paths.plant, places)
-        self._solver = FixedPoint(self._scene)
+        self._solver = FixedPoint(self._scene, forms_for(STEPS))
         stations = self._scene.station.tolist()
         wires = {link: -1 - link for link in used if paths.place[link] < 0}
         self._sharing = Sharing(routes, dict(zip(on_air, stations, strict=True)) | wires)

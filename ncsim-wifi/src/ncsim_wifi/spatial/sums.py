@@ -1,0 +1,18 @@
+"""Sums and products whose order is known, so that compiled loops give the same bits.
+
+numpy's own sums group their terms as suits the processor.
+"""
+
+import numpy as np
+
+from ncsim_wifi.quantities import FloatArray
+
+
+def row_sums(values: FloatArray) -> FloatArray:
+    """Return the sums along the last axis, each from its first term to its last."""
+    return np.asarray(np.add.accumulate(values, axis=-1)[..., -1])
+
+
+def row_products(values: FloatArray) -> FloatArray:
+    """Return the products along the last axis, each from its first factor to its last."""
+    return np.asarray(np.multiply.accumulate(values, axis=-1)[..., -1])

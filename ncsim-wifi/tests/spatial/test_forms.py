@@ -1,0 +1,73 @@
+"""Compiled loops give the bits that arrays give."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ncsim_wifi.phy.mcs import read_table
+from ncsim_wifi.spatial import forms
+from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.scene import scene_of
+from ncsim_wifi.spatial.settings import Settings
+from ncsim_wifi.spatial.solve import FixedPoint
+
+pytest.importorskip("numba")
+
+links = st.tuples(
+    st.tuples(*[st.floats(0, 300)] * 2), st.tuples(*[st.floats(-40, 40)] * 2), st.integers(0, 7)
+)
+
+
+def plant_of(links, links_per_station, *, rts_cts):
+    """Return links whose senders each have one or several."""
+    count = len(links)
+    source = np.arange(count) // links_per_station
+    senders_m = np.array([at for at, _, _ in links])[source]
+    receivers_m = senders_m + np.array([turned for _, turned, _ in links])
+    at_m = np.concatenate([np.array([at for at, _, _ in links]), receivers_m])
+    apart_m = np.hypot(*(at_m[:, None] - at_m[None]).transpose(2, 0, 1))
+    scheme = np.array([scheme for _, _, scheme in links])
+    return Plant(
+        tuple(f"l{link:02d}" for link in range(count)),
+        source,
+        np.arange(count) + count,
+        scheme,
+        np.array(read_table("ax").rate_Mbps)[scheme],
+        20.0 - 46.42 - 30.0 * np.log10(np.maximum(apart_m, 1.0)),
+        Settings(rts_cts=rts_cts),
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(links, min_size=2, max_size=24), st.integers(1, 3), st.booleans())
+def test_goodputs_are_the_same_bits_in_both_forms(links, links_per_station, rts_cts):
+    scene = scene_of(plant_of(links, links_per_station, rts_cts=rts_cts), range(len(links)))
+
+    arrays = FixedPoint(scene, forms.ARRAYS).goodputs_MBps()
+    loops = FixedPoint(scene, forms.compiled_loops()).goodputs_MBps()
+
+    assert arrays.tobytes() == loops.tobytes()
+
+
+def test_pure_work_never_imports_numba():
+    code = (
+        "import sys\n"
+        "from ncsim_wifi.spatial.forms import ARRAYS, forms_for\n"
+        "assert forms_for(10**9) is ARRAYS and 'numba' not in sys.modules\n"
+    )
+
+    subprocess.run([sys.executable, "-c", code], check=True, env={"NCSIM_PURE": "1"})
+
+
+def test_numba_is_not_started_for_little_work():
+    code = (
+        "import sys\n"
+        "from ncsim_wifi.spatial.forms import ARRAYS, WORTH_LOOPS, forms_for\n"
+        "assert forms_for(WORTH_LOOPS - 1) is ARRAYS and 'numba' not in sys.modules\n"
+        "assert forms_for(1) is not ARRAYS\n"
+    )
+
+    subprocess.run([sys.executable, "-c", code], check=True, env={})
