@@ -11,6 +11,7 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_sums
 
 TINY = 1e-12
 
@@ -66,22 +67,6 @@ def energy_sets(scene: Scene) -> EnergySets:
     )
 
 
-def subset_weights(sets: EnergySets, on: FloatArray) -> FloatArray:
-    """Return the product weight of each feasible subset, shape (rows, subsets).
-
-    Source: MODEL 3.6.
-
-    Args:
-        sets: Energy sets.
-        on: a, probability that a member is on while the station could send.
-    """
-    odds = on / (1.0 - on)
-    weight = np.ones((len(on), 1))
-    for member in range(on.shape[1]):
-        weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
-    return weight * sets.feasible
-
-
 class GateMasks(NamedTuple):
     """The subsets that a gate compares, by relation it concerns.
 
@@ -90,12 +75,12 @@ class GateMasks(NamedTuple):
         row: The energy set of the station that is silenced.
         subsets: 1 for subsets with the other party of the relation, and no other hostile station,
             that leave the channel free; for all of these; for subsets to compare with that leave
-            it free; for all of these.
+            it free; for all of these; shape (4, relations, subsets).
     """
 
     relation: IntArray
     row: IntArray
-    subsets: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    subsets: FloatArray
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
@@ -118,8 +103,70 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
     free = ~sets.blocks[row[relation]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
-    masks = [each.astype(np.float64) for each in (with_it & free, with_it, without & free, without)]
-    return GateMasks(relation, row[relation], (masks[0], masks[1], masks[2], masks[3]))
+    masks = np.array([with_it & free, with_it, without & free, without], np.float64)
+    return GateMasks(relation, row[relation], masks)
+
+
+class Silencing(NamedTuple):
+    """Who is silenced by summed power, from tables of a scene.
+
+    Args:
+        feasible: 1 where a subset can be on the air together, shape (rows, subsets).
+        blocks: 1 where it silences the station.
+        before: Subsets for the gates at the sender.
+        during: Subsets for the gates at the interferer.
+        relation_count: Number of relations.
+    """
+
+    feasible: FloatArray
+    blocks: FloatArray
+    before: GateMasks
+    during: GateMasks
+    relation_count: int
+
+
+class Silenced(NamedTuple):
+    """What summed power does.
+
+    Args:
+        blocked: B of each station that has an energy set.
+        before: al of each relation.
+        during: be of each relation, at the beginning.
+    """
+
+    blocked: FloatArray
+    before: FloatArray
+    during: FloatArray
+
+
+def silencing_of(scene: Scene, sets: EnergySets, hostile: Hostile) -> Silencing:
+    """Return the tables of a scene."""
+    return Silencing(
+        sets.feasible.astype(np.float64),
+        sets.blocks.astype(np.float64),
+        gate_masks(scene, sets, hostile, before=True),
+        gate_masks(scene, sets, hostile, before=False),
+        len(hostile),
+    )
+
+
+def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
+    """Return how likely stations are silenced, and the gates that follow.
+
+    Source: MODEL 3.6.
+
+    Args:
+        tables: Energy sets.
+        on: a, probability that a member is on while the station could send, (rows, members).
+    """
+    odds = on / (1.0 - on)
+    weight = np.ones((len(on), 1))
+    for member in range(on.shape[1]):
+        weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
+    weight = weight * tables.feasible
+    blocked = row_sums(weight * tables.blocks) / row_sums(weight)
+    gates = (gate(weight, masks, tables.relation_count) for masks in (tables.before, tables.during))
+    return Silenced(blocked, *gates)
 
 
 def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
@@ -129,7 +176,7 @@ def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """
     result = np.ones(count)
     weight = weights[masks.row]
-    sums = [np.add.reduce(weight * each, axis=1) for each in masks.subsets]
+    sums = row_sums(masks.subsets * weight)
     with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
     result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from typing import Final, NamedTuple
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial import chains, gaps
+from ncsim_wifi.spatial import chains, energy, gaps, overlap
 
 WORTH_LOOPS: Final = 4000
 """Steps that save, at about 1 ms each, what it takes to start numba and to read its cache."""
@@ -26,18 +26,22 @@ class Forms(NamedTuple):
 
     survival: Callable[[gaps.Interferers, gaps.Windows], gaps.Survival]
     joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
+    silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
+    helped_kill: Callable[[overlap.Helped, FloatArray, FloatArray, FloatArray], FloatArray]
 
 
-ARRAYS: Final = Forms(gaps.survival, chains.joint_stages)
+ARRAYS: Final = Forms(gaps.survival, chains.joint_stages, energy.silenced_by, overlap.helped_kill)
 
 
 @cache
 def compiled_loops() -> Forms:
     """Return the compiled form; plain loops, which are slow, without numba."""
-    from ncsim_wifi.spatial.compiled import chains as chain_loops
-    from ncsim_wifi.spatial.compiled import gaps as gap_loops
+    from ncsim_wifi.spatial.compiled.chains import joint_stages
+    from ncsim_wifi.spatial.compiled.energy import silenced_by
+    from ncsim_wifi.spatial.compiled.gaps import survival
+    from ncsim_wifi.spatial.compiled.overlap import helped_kill
 
-    return Forms(gap_loops.survival, chain_loops.joint_stages)
+    return Forms(survival, joint_stages, silenced_by, helped_kill)
 
 
 def forms_for(steps: int) -> Forms:

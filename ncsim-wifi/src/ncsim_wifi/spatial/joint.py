@@ -12,6 +12,7 @@ from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.chains import SideRates
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_sums
 
 
 class JointStages:
@@ -54,10 +55,10 @@ class JointStages:
             by_stage: What is averaged, by b, shape (relations, 7).
         """
         result = np.empty_like(by_stage)
-        result[:] = np.add.reduce(alone * by_stage, axis=1, keepdims=True)
+        result[:] = row_sums(alone * by_stage)[:, None]
         if self._given is not None:
             some = self._relations
-            result[some] = np.add.reduce(self._given * by_stage[some][:, None, :], axis=2)
+            result[some] = row_sums(self._given * by_stage[some][:, None, :])
         return result
 
     def update(

@@ -15,17 +15,13 @@ from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, windows_of
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
+    LARGEST_ON,
+    LEAST_ON,
     half_kill,
-    joint_kill,
-    meets_probability,
-    overlap_us,
 )
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics
-
-LARGEST_ON = 0.97
-LEAST_ON = 1e-9
 
 
 class Traffic(NamedTuple):
@@ -85,39 +81,18 @@ class HiddenLoss(NamedTuple):
     correction: FloatArray
 
 
-def effective_hazard(scene: Scene, statics: Statics, traffic: Traffic) -> FloatArray:
+def effective_hazard(statics: Statics, traffic: Traffic, forms: Forms) -> FloatArray:
     """Return h_r of each relation (MODEL 3.7)."""
-    hostile = statics.hostile
+    hostile, times = statics.hostile, traffic.times
     alone = statics.alone_hazard
     half = half_kill(alone)
     some = hostile.with_helpers
     if len(some):
-        half[some] = joint_kill(
-            hostile.half_kill[some], hostile.omega[some], _helpers_met(scene, statics, traffic)
-        )
+        half[some] = forms.helped_kill(statics.helped, traffic.on, times.on_air_us, times.busy_us)
         half = np.where(hostile.is_strong, np.maximum(half, half_kill(alone)), half)
     if hostile.has_partners:
         half = half + _partners_kill(hostile, traffic)
     return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9)
-
-
-def _helpers_met(scene: Scene, statics: Statics, traffic: Traffic) -> FloatArray:
-    """Return x_k of each helper of each relation that has any, 0 where there is none."""
-    hostile, times = statics.hostile, traffic.times
-    some = hostile.with_helpers
-    own, station, helper = statics.own[some], hostile.station[some], hostile.helper[some]
-    on_us, busy_us = times.on_air_us, times.busy_us
-    on = np.minimum(np.maximum(traffic.on[own, station], LEAST_ON), LARGEST_ON)
-    window_us = overlap_us(
-        on_us[station],
-        busy_us[station] / on,
-        scene.protected_us[hostile.link[some]],
-        scene.settings.approximations.overlap_scale,
-    )
-    helper_on = np.minimum(np.maximum(traffic.on[own[:, None], helper], LEAST_ON), LARGEST_ON)
-    helper_on = helper_on * (on_us / busy_us)[helper]
-    met = meets_probability(helper_on, on_us[helper], window_us[:, None])
-    return np.where(helper >= 0, met, 0.0)
 
 
 def _partners_kill(hostile: Hostile, traffic: Traffic) -> FloatArray:
@@ -153,7 +128,7 @@ def hidden_loss(
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
     own, other = statics.own, hostile.station
-    hazard = effective_hazard(scene, statics, traffic)
+    hazard = effective_hazard(statics, traffic, forms)
     immune = np.exp(-hazard)
     kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)

@@ -3,11 +3,16 @@
 Source: MODEL 3.7.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.spatial.sums import row_sums
 
 LARGEST_KILL = 1.0 - 1e-9
+LARGEST_ON = 0.97
+LEAST_ON = 1e-9
 
 
 def overlap_us(
@@ -65,5 +70,51 @@ def joint_kill(kill: FloatArray, omega: FloatArray, present: FloatArray) -> Floa
         there = present[:, helper, None]
         chance = np.concatenate([chance * (1.0 - there), chance * there], axis=1)
     weight = omega * chance
-    total = np.maximum(np.add.reduce(weight, axis=1), 1e-300)
-    return np.asarray(np.minimum(np.add.reduce(weight * kill, axis=1) / total, LARGEST_KILL))
+    total = np.maximum(row_sums(weight), 1e-300)
+    return np.asarray(np.minimum(row_sums(weight * kill) / total, LARGEST_KILL))
+
+
+class Helped(NamedTuple):
+    """The relations that may act together with others, and with whom.
+
+    Args:
+        own: The station that sends.
+        station: The one that it suffers from.
+        protected_us: V_p of its link.
+        helper: Who may help, -1 for nobody, shape (relations, helpers).
+        kill: Part of frames lost beyond what each set of helpers takes, shape (relations, sets).
+        omega: Weight of each set.
+        scale: Calibrated factor of the overlap.
+    """
+
+    own: IntArray
+    station: IntArray
+    protected_us: FloatArray
+    helper: IntArray
+    kill: FloatArray
+    omega: FloatArray
+    scale: float
+
+
+def helped_kill(
+    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+) -> FloatArray:
+    """Return kd of each of these relations.
+
+    Source: MODEL 3.7.
+
+    Args:
+        helped: The relations.
+        on: A[u, w].
+        on_air_us: T of each station.
+        busy_us: For how long a frame of each station keeps others from counting.
+    """
+    own, station, helper = helped.own, helped.station, helped.helper
+    own_on = np.minimum(np.maximum(on[own, station], LEAST_ON), LARGEST_ON)
+    window_us = overlap_us(
+        on_air_us[station], busy_us[station] / own_on, helped.protected_us, helped.scale
+    )
+    helper_on = np.minimum(np.maximum(on[own[:, None], helper], LEAST_ON), LARGEST_ON)
+    helper_on = helper_on * (on_air_us / busy_us)[helper]
+    met = meets_probability(helper_on, on_air_us[helper], window_us[:, None])
+    return joint_kill(helped.kill, helped.omega, np.where(helper >= 0, met, 0.0))

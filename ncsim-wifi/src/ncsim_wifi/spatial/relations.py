@@ -11,7 +11,6 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.near import NOBODY, Near, grouped
-from ncsim_wifi.spatial.overlap import half_kill
 from ncsim_wifi.spatial.scene import Scene
 
 SURVIVAL_DISCOUNT = 0.6
@@ -92,11 +91,6 @@ class Hostile:
     def has_partners(self) -> bool:
         """Return whether any interferer may collide with another that harms the link."""
         return bool((self.partner_kill != 0.0).any())
-
-    @cached_property
-    def half_kill(self) -> FloatArray:
-        """Return the part of half overlapped frames that ``delta`` destroys."""
-        return half_kill(self.delta)
 
     def group_sums(self, values: FloatArray) -> FloatArray:
         """Return for each relation the sum of its group."""

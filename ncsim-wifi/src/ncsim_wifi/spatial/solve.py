@@ -22,19 +22,17 @@ from ncsim_wifi.spatial.backoff import (
     visits_per_packet,
 )
 from ncsim_wifi.spatial.collisions import base_success
-from ncsim_wifi.spatial.energy import gate, subset_weights
 from ncsim_wifi.spatial.forms import ARRAYS, Forms, forms_for
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
 from ncsim_wifi.spatial.joint import JointStages
 from ncsim_wifi.spatial.losses import (
-    LARGEST_ON,
-    LEAST_ON,
     HiddenLoss,
     Traffic,
     hidden_loss,
 )
 from ncsim_wifi.spatial.near import far_noise_hazard, others_survival
 from ncsim_wifi.spatial.occupancy import Occupancy
+from ncsim_wifi.spatial.overlap import LARGEST_ON, LEAST_ON
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.silence import Silence, silence_of
@@ -272,13 +270,12 @@ class FixedPoint:
         times = traffic.times
         stretch = (times.on_air_us + settings.energy_tail_us) / times.busy_us
         on = traffic.on[sets.station[:, None], sets.member] * stretch[sets.member]
-        weights = subset_weights(sets, np.clip(on, LEAST_ON, LARGEST_ON))
-        fresh = (weights * sets.blocks).sum(axis=1) / weights.sum(axis=1)
+        on = np.minimum(np.maximum(on, LEAST_ON), LARGEST_ON)
+        found = self._forms.silenced_by(statics.silencing, on)
+        fresh = found.blocked
         self._blocked[sets.station] += settings.gain * (fresh - self._blocked[sets.station])
         np.minimum(self._blocked, LARGEST_ON, out=self._blocked)
-        before = gate(weights, statics.before, count)
-        during = gate(weights, statics.during, count)
-        return before, 1.0 - (1.0 - during) * statics.protection_ends
+        return found.before, 1.0 - (1.0 - found.during) * statics.protection_ends
 
     def _partner_collisions(self, traffic: Traffic, during: FloatArray) -> FloatArray:
         """Return what same-slot collisions with partners by summed power leave (MODEL 3.6)."""

@@ -10,7 +10,7 @@ from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations, deaf_to_ack
 from ncsim_wifi.spatial.artefacts import LostFields, lost_fields
 from ncsim_wifi.spatial.collisions import same_slot_loss
-from ncsim_wifi.spatial.energy import EnergySets, GateMasks, energy_sets, gate_masks
+from ncsim_wifi.spatial.energy import EnergySets, Silencing, energy_sets, silencing_of
 from ncsim_wifi.spatial.handshake import (
     SLOTS_MET,
     CTS_NOTICED_us,
@@ -23,6 +23,7 @@ from ncsim_wifi.spatial.handshake import (
 )
 from ncsim_wifi.spatial.near import Others, near_interferers
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
+from ncsim_wifi.spatial.overlap import Helped, half_kill
 from ncsim_wifi.spatial.relations import (
     Hostile,
     RTS_RATIO_dB,
@@ -53,6 +54,7 @@ class Statics:
         earlier_rivals: The same, on relations of earlier groups only.
         window_us: V_r, the window in which an interferer must not begin.
         alone_hazard: h(w) of each relation.
+        helped: The relations that may act together with others.
         by_cts: Whether a relation is one of stations kept apart by CTS only.
         by_cts_survives: What handshakes of these survive, by stage of the other.
         by_cts_missed: How often neither meets the other at all.
@@ -69,8 +71,7 @@ class Statics:
         deaf_to_ack: Part of its own acknowledgements that a sender loses to stations that it does
             not sense, while they send, shape (links, stations).
         energy: Who is silenced by summed power.
-        before: Subsets for the gates at the sender.
-        during: Subsets for the gates at the interferer.
+        silencing: Tables of these.
         protection_ends: How likely summed power at the interferer ends within a frame.
     """
 
@@ -82,6 +83,7 @@ class Statics:
     earlier_rivals: tuple[IntArray, IntArray]
     window_us: FloatArray
     alone_hazard: FloatArray
+    helped: Helped
     by_cts: BoolArray
     by_cts_survives: FloatArray
     by_cts_missed: FloatArray
@@ -97,8 +99,7 @@ class Statics:
     acks: AckRelations
     deaf_to_ack: FloatArray
     energy: EnergySets
-    before: GateMasks
-    during: GateMasks
+    silencing: Silencing
     protection_ends: FloatArray
 
 
@@ -122,6 +123,7 @@ def statics_of(scene: Scene) -> Statics:
         earlier_rivals,
         _windows_us(scene, hostile),
         alone,
+        _helped(scene, hostile),
         scene.silenced_by_cts[own, hostile.station],
         unmet(fatal),
         unmet(np.full_like(fatal, SLOTS_MET)),
@@ -137,9 +139,22 @@ def statics_of(scene: Scene) -> Statics:
         ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
         deaf_to_ack(scene),
         energy,
-        gate_masks(scene, energy, hostile, before=True),
-        gate_masks(scene, energy, hostile, before=False),
+        silencing_of(scene, energy, hostile),
         np.exp(-scene.data_us[hostile.link] / scene.settings.approximations.helper_cycle_us),
+    )
+
+
+def _helped(scene: Scene, hostile: Hostile) -> Helped:
+    """Return the relations that may act together with others."""
+    some = hostile.with_helpers
+    return Helped(
+        scene.station[hostile.link[some]],
+        hostile.station[some],
+        scene.protected_us[hostile.link[some]],
+        hostile.helper[some],
+        half_kill(hostile.delta[some]),
+        hostile.omega[some],
+        scene.settings.approximations.overlap_scale,
     )
 
 

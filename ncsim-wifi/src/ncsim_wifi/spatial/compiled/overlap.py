@@ -1,0 +1,67 @@
+"""The harm of weak interferers that act together with others, relation by relation.
+
+Source: MODEL 3.7; see ``ncsim_wifi.spatial.overlap``.
+"""
+
+import numpy as np
+
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
+
+
+@compiled
+def helped_kill(
+    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+) -> FloatArray:
+    """Return kd of each of these relations."""
+    count, helpers = helped.helper.shape
+    result = np.empty(count)
+    chance = np.empty(1 << helpers)
+    for at in range(count):
+        window_us = _overlap_us(helped, at, on, (on_air_us, busy_us))
+        chance[0] = 1.0
+        for place in range(helpers):
+            met = _met(helped, (at, place), on, (on_air_us, busy_us), window_us)
+            half = 1 << place
+            for held in range(half):
+                chance[half + held] = chance[held] * met
+                chance[held] = chance[held] * (1.0 - met)
+        total = killed = 0.0
+        for held in range(1 << helpers):
+            weight = helped.omega[at, held] * chance[held]
+            total = total + weight
+            killed = killed + weight * helped.kill[at, held]
+        result[at] = min(killed / max(total, 1e-300), LARGEST_KILL)
+    return result
+
+
+@compiled
+def _overlap_us(
+    helped: Helped, at: int, on: FloatArray, times: tuple[FloatArray, FloatArray]
+) -> float:
+    """Return L_o of one relation."""
+    station, protected_us = helped.station[at], helped.protected_us[at]
+    on_air_us, busy_us = times[0][station], times[1][station]
+    cycle_us = busy_us / min(max(on[helped.own[at], station], LEAST_ON), LARGEST_ON)
+    part = on_air_us / cycle_us
+    met = min(1.0, (protected_us + on_air_us) / cycle_us)
+    return float(helped.scale * min(on_air_us, part * protected_us / met))
+
+
+@compiled
+def _met(
+    helped: Helped,
+    place: tuple[int, int],
+    on: FloatArray,
+    times: tuple[FloatArray, FloatArray],
+    window_us: float,
+) -> float:
+    """Return x_k of one helper of one relation, 0 where there is none."""
+    helper = helped.helper[place]
+    if helper < 0:
+        return 0.0
+    on_air_us, busy_us = times[0][helper], times[1][helper]
+    part = min(max(on[helped.own[place[0]], helper], LEAST_ON), LARGEST_ON) * (on_air_us / busy_us)
+    off_us = on_air_us * (1.0 / part - 1.0)
+    return float(1.0 - (1.0 - part) * max(0.0, 1.0 - window_us / max(off_us, 1e-9)))
