@@ -1,13 +1,19 @@
 """The folder of a run appears whole, or not at all."""
 
+import contextlib
+import errno
+import gzip
+import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from ncsim_core.errors import ScenarioError
-from ncsim_core.trace.files import write_atomically
+from ncsim_core.trace.files import appearing, write_atomically
 from ncsim_core.trace.output import atomic_output_folder
+from ncsim_core.trace.records import TraceError
 
 
 def fill(path, text="new", *, force=False):
@@ -110,6 +116,55 @@ def test_new_folders_have_the_usual_permissions(tmp_path):
     (tmp_path / "usual").mkdir()
 
     assert (tmp_path / "out").stat().st_mode == (tmp_path / "usual").stat().st_mode
+
+
+@pytest.mark.parametrize("content", ["text\n", b"text\n"], ids=repr)
+@pytest.mark.parametrize("name", ["a.txt", "a.txt.gz"])
+def test_a_file_that_cannot_be_finished_leaves_nothing_behind(content, name, tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "write_bytes", fill_the_disk)
+
+    with pytest.raises(TraceError, match=f"{name}: cannot be written: No space left on device"):
+        write_atomically(tmp_path / name, content)
+
+    assert not list(tmp_path.iterdir())
+
+
+def fill_the_disk(path, data):
+    with path.open("wb") as file:
+        file.write(data[:2])
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_what_fails_within_the_block_leaves_the_earlier_file(tmp_path):
+    (tmp_path / "a.txt").write_text("earlier", encoding="utf-8")
+
+    with contextlib.suppress(ZeroDivisionError), appearing(tmp_path / "a.txt") as place:
+        place.write_text("half", encoding="utf-8")
+        _ = 1 / 0
+
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.txt", "earlier")]
+
+
+def test_a_link_is_written_through_and_a_pipe_is_written_to(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "far.txt")
+    os.mkfifo(tmp_path / "pipe")
+    reader = subprocess.Popen(["cat", tmp_path / "pipe"], stdout=subprocess.PIPE)
+
+    for name in ("link", "pipe"):
+        write_atomically(tmp_path / name, "text\n")
+
+    assert reader.communicate(timeout=60)[0] == b"text\n"
+    assert (tmp_path / "far.txt").read_text(encoding="utf-8") == "text\n"
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "pipe").is_fifo()
+
+
+def test_compressed_text_does_not_depend_on_the_clock(tmp_path):
+    for name in ("a.gz", "b.gz"):
+        write_atomically(tmp_path / name, "text\n")
+
+    assert gzip.decompress((tmp_path / "a.gz").read_bytes()) == b"text\n"
+    assert (tmp_path / "a.gz").read_bytes() == (tmp_path / "b.gz").read_bytes()
 
 
 def test_single_files_appear_whole_too(tmp_path):

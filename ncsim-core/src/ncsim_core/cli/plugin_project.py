@@ -9,6 +9,7 @@ from string import Template
 from typing import Final
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.trace.files import write_atomically
 
 CORE_REQUIREMENT: Final = "ncsim-core>=0.1,<0.2"
 
@@ -150,7 +151,7 @@ def write_project(folder: Path, name: str, kind: str) -> list[Path]:
     for path, template in _files(values["package"], kind).items():
         file = folder / path
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(_template(template).substitute(values), "utf-8")
+        write_atomically(file, _template(template).substitute(values))
         written.append(file)
     return written
 

@@ -93,6 +93,8 @@ def report(  # noqa: PLR0913 - one parameter per option
 
 
 def _put(table: "Table", form: ReportFormat, digits: int, output: Path | None) -> None:
+    from ncsim_core.trace.files import write_atomically
+
     if form is ReportFormat.PARQUET:
         if output is None:
             raise ScenarioError("Parquet is no text; give --output FILE")
@@ -103,7 +105,7 @@ def _put(table: "Table", form: ReportFormat, digits: int, output: Path | None) -
         typer.echo(text, nl=False)
     else:
         output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
+        write_atomically(output, text)
 
 
 def _text(table: "Table", form: ReportFormat, digits: int) -> str:

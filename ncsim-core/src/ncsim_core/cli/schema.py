@@ -35,10 +35,12 @@ def schema(
     if write is None:
         typer.echo(schema_text(kind or SchemaKind.SCENARIO), nl=False)
         return
+    from ncsim_core.trace.files import write_atomically
+
     write.mkdir(parents=True, exist_ok=True)
     for each in [kind] if kind else SchemaKind:
         path = write / f"{each}.schema.json"
-        path.write_text(schema_text(each), encoding="utf-8")
+        write_atomically(path, schema_text(each))
         typer.echo(f"wrote {path}", err=True)
 
 

@@ -79,6 +79,7 @@ def extract(
     """Take the trace out of a report, byte for byte as the run wrote it."""
     from ncsim_core.errors import ScenarioError
     from ncsim_core.trace.embedding import embedded_traces, traces_in
+    from ncsim_core.trace.files import write_atomically
 
     if output.exists() and not force:
         raise ScenarioError(f"{output}: exists already; choose another name or give --force")
@@ -88,7 +89,7 @@ def extract(
         raise ScenarioError(f"{report}: holds no trace; is it a report of ncsim view?")
     if number > len(traces):
         raise ScenarioError(f"{report}: holds {len(traces)} trace(s), no number {number}")
-    output.write_bytes(traces[number - 1])
+    write_atomically(output, traces[number - 1])
     typer.echo(f"written: {output}")
 
 

@@ -1,12 +1,14 @@
 """How the figures of studies look: size, colours, markers, files that are equal byte for byte."""
 
 import importlib
+import io
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.trace.files import write_atomically
 
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 """Told apart by colour-blind readers too. Source: Okabe and Ito (2008)."""
@@ -51,7 +53,12 @@ def figure_at(path: Path, width_in: float = 6.0, height_in: float = 3.8) -> Iter
         figure = figures.Figure(figsize=(width_in, height_in), layout="constrained")
         yield figure
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=200, metadata=_NO_DATE.get(suffix))
+        picture = (
+            io.BytesIO()
+        )  # not the file itself: matplotlib's PDF writer stumbles over full disks
+        metadata = _NO_DATE.get(suffix)
+        figure.savefig(picture, dpi=200, format=suffix.removeprefix("."), metadata=metadata)
+        write_atomically(path, picture.getvalue())
 
 
 def style(number: int) -> dict[str, Any]:

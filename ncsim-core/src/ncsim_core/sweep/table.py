@@ -18,6 +18,7 @@ from ncsim_core.sweep.formatting import (
 from ncsim_core.sweep.plan import SweepPlan, canonical
 from ncsim_core.sweep.store import Store
 from ncsim_core.sweep.worker import ResultRow
+from ncsim_core.trace.files import appearing
 from ncsim_core.units import s_from_us
 
 if TYPE_CHECKING:
@@ -127,7 +128,8 @@ class Table:
         except ImportError:
             raise ScenarioError("Parquet needs the package pyarrow: pip install pyarrow") from None
         path.parent.mkdir(parents=True, exist_ok=True)
-        pq.write_table(pa.table(self.to_columns()), path)
+        with appearing(path) as place:
+            pq.write_table(pa.table(self.to_columns()), place)
 
 
 def record_of(

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, Final, TextIO
 
@@ -20,18 +21,50 @@ def temporary_sibling(path: Path) -> Path:
     return path.with_name(f".{path.name}.partial-{os.getpid()}-{secrets.token_hex(4)}")
 
 
-def write_atomically(path: Path, text: str) -> None:
-    """Write a text file that appears under its name only when it is whole.
+@contextlib.contextmanager
+def appearing(path: Path) -> Iterator[Path]:
+    """Yield where to write a file that takes the name ``path`` when the block ends well.
+
+    A name that stands for a device or a pipe is written to as it is; a link, where it leads to.
 
     Raises:
         TraceError: It cannot be written.
     """
-    sink = TextSink(path)
+    final, place = _places(path)
     try:
-        sink.write(text)
-        sink.finish()
+        yield place
+        if place != final:
+            place.replace(final)
+    except OSError as error:
+        raise TraceError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
-        sink.discard()
+        if place != final:
+            with contextlib.suppress(OSError):
+                place.unlink(missing_ok=True)
+
+
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """Write a file that appears under its name only when it is whole.
+
+    Args:
+        path: Its name.
+        content: Bytes, or text, which is compressed if the name ends in ``.gz``.
+
+    Raises:
+        TraceError: It cannot be written.
+    """
+    data = content if isinstance(content, bytes) else content.encode("utf-8", "backslashreplace")
+    if path.suffix == ".gz" and isinstance(content, str):
+        data = gzip.compress(data, GZIP_LEVEL, mtime=0)
+    with appearing(path) as place:
+        place.write_bytes(data)
+
+
+def _places(path: Path) -> tuple[Path, Path]:
+    """Return where a file is to be in the end, and where it is written until it is whole."""
+    final = path.resolve() if path.is_symlink() else path
+    is_stream = final.exists() and not final.is_file()
+    return final, final if is_stream else temporary_sibling(final)
 
 
 def json_text(document: object) -> str:
@@ -72,7 +105,9 @@ class TextSink:
             self._stream: TextIO | None = target
             return
         self._path = Path(target)
-        self._written_to = self._path if is_live else temporary_sibling(self._path)
+        self._final, self._written_to = _places(self._path)
+        if is_live:
+            self._written_to = self._final
         try:
             self._raw = self._written_to.open("wb")
         except OSError as error:
@@ -102,7 +137,8 @@ class TextSink:
                 return
             stream.close()
             self._raw.close()
-            self._written_to.replace(self._path)
+            if self._written_to != self._final:
+                self._written_to.replace(self._final)
         except OSError as error:
             self._close_raw()
             self._remove()
@@ -116,15 +152,15 @@ class TextSink:
         with contextlib.suppress(OSError):  # a full disk: what is buffered is not wanted any more
             stream.close()
         self._close_raw()
-        if not self._is_live:
-            self._remove()
+        self._remove()
 
     def _close_raw(self) -> None:
         with contextlib.suppress(OSError):
             self._raw.close()
 
     def _remove(self) -> None:
-        self._written_to.unlink(missing_ok=True)
+        if self._written_to != self._final:
+            self._written_to.unlink(missing_ok=True)
 
     def _fault(self, error: OSError) -> TraceError:
         self._failure = f"cannot be written: {error.strerror or error}"

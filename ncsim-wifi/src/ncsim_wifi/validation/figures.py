@@ -11,6 +11,7 @@ mpl.use("Agg")
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from ncsim_core.trace.files import appearing
 from ncsim_core.units import MEGABITS_PER_MEGABYTE
 
 from ncsim_wifi.phy.mcs import rate_table
@@ -55,7 +56,8 @@ def write_figures(folder: Path) -> list[Path]:
     with mpl.rc_context({"font.size": 9, "axes.titlesize": 10, "legend.fontsize": 8}):
         for name, draw in drawings.items():
             path = folder / f"{name}.png"
-            draw().savefig(path, dpi=DPI)
+            with appearing(path) as place:
+                draw().savefig(place, dpi=DPI, format="png")
             paths.append(path)
     return paths
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Final, NamedTuple, TypeAlias
 
-from ncsim_core.trace.files import write_atomically
+from ncsim_core.trace.files import appearing, write_atomically
 from ncsim_core.trace.records import TraceError
 from ncsim_core.trace.run_trace import RunTask, RunTrace
 from ncsim_core.units import s_from_us
@@ -161,4 +161,5 @@ def write_parquet(run: RunTrace, folder: Path) -> None:
         schema = arrow.schema([(column, types[kind]) for column, kind in table.columns.items()])
         rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows(run)]
         content = arrow.Table.from_pylist(rows, schema=schema)
-        parquet.write_table(content, folder / f"{name}.parquet", compression="zstd")
+        with appearing(folder / f"{name}.parquet") as place:
+            parquet.write_table(content, place, compression="zstd")
