@@ -6,7 +6,12 @@ from ncsim_wifi.spatial.belief import clique_belief
 from ncsim_wifi.spatial.chains import STAGES, ChainRates, stationary
 from ncsim_wifi.spatial.gaps import power_sums
 from ncsim_wifi.spatial.hazard import hazard, hazard_table
-from ncsim_wifi.spatial.occupancy import occupancy_model, occupancy_of
+from ncsim_wifi.spatial.occupancy import (
+    exact_occupancy,
+    independent_sets,
+    occupancy_of,
+    set_table,
+)
 from ncsim_wifi.spatial.relay import maximal_cliques
 
 
@@ -20,7 +25,7 @@ def line(count):
 def test_belief_is_exact_on_a_tree_of_cliques():
     activity = np.array([3.0, 1.0, 5.0, 2.0, 0.5])
 
-    exact = occupancy_model(line(5), 1000)(activity)
+    exact = occupancy_of(line(5), 1000)(activity)
     belief = clique_belief(line(5))(activity)
 
     assert belief.idle == pytest.approx(exact.idle, rel=1e-5)
@@ -35,7 +40,8 @@ def test_components_of_the_sensing_graph_are_independent():
     activity = np.array([3.0, 1.0, 5.0, 2.0])
 
     apart = occupancy_of(senses, 1000)(activity)
-    together = occupancy_model(senses, 1000)(activity)
+    every = np.arange(4), independent_sets(senses, 1000)
+    together = exact_occupancy(set_table(senses, [every]), activity)
 
     for one, other in zip(apart, together, strict=True):
         assert one == pytest.approx(other)

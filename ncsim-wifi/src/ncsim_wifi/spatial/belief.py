@@ -6,11 +6,12 @@ Source: MODEL 3.3.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ncsim_wifi.quantities import BoolArray, FloatArray
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from ncsim_wifi.spatial.occupancy import Occupancy
@@ -44,41 +45,68 @@ def edge_cliques(senses: BoolArray) -> list[list[int]]:
 class CliqueBelief:
     """At most one station of each clique is on.
 
+    An entry is a station in a clique; entries are in the order of cliques.
+
     Args:
-        member: Which stations a clique holds, shape (cliques, stations), 0 or 1.
-        closed: Who senses whom, everybody itself.
+        clique: The clique of each entry.
+        station: Its station.
+        closed: 1 where the first station is or senses the second.
     """
 
-    member: FloatArray
-    closed: BoolArray
+    clique: IntArray
+    station: IntArray
+    closed: FloatArray
+
+    @cached_property
+    def _clique_starts(self) -> IntArray:
+        return np.flatnonzero(np.diff(self.clique, prepend=-1))
+
+    @cached_property
+    def _by_station(self) -> tuple[IntArray, IntArray]:
+        """Return the entries in the order of stations, and where those of each begin."""
+        order = np.argsort(self.station, kind="stable")
+        return order, np.flatnonzero(np.diff(self.station[order], prepend=-1))
+
+    @cached_property
+    def _near(self) -> FloatArray:
+        """Return 1 where a station is or senses that of an entry, shape (stations, entries)."""
+        return self.closed[:, self.station]
 
     def __call__(self, activity: FloatArray) -> "Occupancy":
         """Return the occupancy for rho, the activity of each station."""
         from ncsim_wifi.spatial.occupancy import Occupancy
 
         odds = self._odds(activity)
-        total = odds.sum(axis=1)
-        downward = -np.log1p(total[:, None] - odds) * self.member
-        on_odds = activity * np.exp(downward.sum(axis=0))
+        total = np.add.reduceat(odds, self._clique_starts)[self.clique]
+        on_odds = activity * np.exp(np.bincount(self.station, -np.log1p(total - odds)))
         idle = on_odds / (1.0 + on_odds) / activity
-        left = total[None, :] - self.closed @ odds.T  # without the stations near i, (i, cliques)
-        field = np.empty((len(activity), len(activity)))
-        for near, row in enumerate(left):
-            others = np.where(self.closed[near][None, :], row[:, None], row[:, None] - odds)
-            field[near] = -(np.log1p(np.maximum(others, 0.0)) * self.member).sum(axis=0)
-        share = np.exp(field)
+        share = np.exp(self._field(odds))
         on = activity * share / (1.0 + activity * share)
-        clear = np.where(self.closed, share, on / activity)
+        clear = np.where(self.closed > 0.0, share, on / activity)
         np.fill_diagonal(clear, 1.0)
-        return Occupancy(idle, clear, np.where(self.closed, 0.0, on))
+        return Occupancy(idle, clear, np.where(self.closed > 0.0, 0.0, on))
+
+    def _field(self, odds: FloatArray) -> FloatArray:
+        """Return ln of how likely k finds its cliques free, given that i and its neighbours are.
+
+        Returns:
+            Shape (stations i, stations k).
+        """
+        order, starts = self._by_station
+        far = (1.0 - self._near) * odds
+        left = np.add.reduceat(far, self._clique_starts, axis=1)[:, self.clique] - far
+        logs = np.log1p(np.maximum(left, 0.0))
+        return -np.add.reduceat(logs[:, order], starts, axis=1)
 
     def _odds(self, activity: FloatArray) -> FloatArray:
-        """Return mu, what each station tells each of its cliques, shape (cliques, stations)."""
-        odds = self.member * activity
+        """Return mu, what the station of each entry tells its clique."""
+        alone = activity[self.station]
+        odds = alone
         for _ in range(MAX_SWEEPS):
-            downward = -np.log1p(odds.sum(axis=1, keepdims=True) - odds) * self.member
-            heard = downward.sum(axis=0) - downward
-            fresh = self.member * activity * np.exp(heard)
+            total = np.add.reduceat(odds, self._clique_starts)[self.clique]
+            downward = np.log1p(total - odds)
+            heard = np.bincount(self.station, downward)[self.station] - downward
+            fresh = alone * np.exp(-heard)
             moved = np.abs(fresh - odds).max()
             odds = DAMPING * odds + (1.0 - DAMPING) * fresh
             if moved < ACCURACY:
@@ -87,9 +115,9 @@ class CliqueBelief:
 
 
 def clique_belief(senses: BoolArray) -> CliqueBelief:
-    """Return belief propagation on a sensing graph."""
+    """Return belief propagation on a connected sensing graph of two stations or more."""
     cliques = edge_cliques(senses)
-    member = np.zeros((len(cliques), len(senses)))
-    for row, clique in enumerate(cliques):
-        member[row, clique] = 1.0
-    return CliqueBelief(member, senses | np.eye(len(senses), dtype=np.bool_))
+    number = [at for at, clique in enumerate(cliques) for _ in clique]
+    station = [each for clique in cliques for each in clique]
+    closed = senses | np.eye(len(senses), dtype=np.bool_)
+    return CliqueBelief(np.array(number), np.array(station), closed.astype(np.float64))

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from typing import Final, NamedTuple
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial import chains, energy, gaps, overlap
+from ncsim_wifi.spatial import chains, energy, gaps, occupancy, overlap
 
 WORTH_LOOPS: Final = 4000
 """Steps that save, at about 1 ms each, what it takes to start numba and to read its cache."""
@@ -27,10 +27,17 @@ class Forms(NamedTuple):
     survival: Callable[[gaps.Interferers, gaps.Windows], gaps.Survival]
     joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
     silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
+    exact_occupancy: Callable[[occupancy.SetTable, FloatArray], occupancy.Occupancy]
     helped_kill: Callable[[overlap.Helped, FloatArray, FloatArray, FloatArray], FloatArray]
 
 
-ARRAYS: Final = Forms(gaps.survival, chains.joint_stages, energy.silenced_by, overlap.helped_kill)
+ARRAYS: Final = Forms(
+    gaps.survival,
+    chains.joint_stages,
+    energy.silenced_by,
+    occupancy.exact_occupancy,
+    overlap.helped_kill,
+)
 
 
 @cache
@@ -39,9 +46,10 @@ def compiled_loops() -> Forms:
     from ncsim_wifi.spatial.compiled.chains import joint_stages
     from ncsim_wifi.spatial.compiled.energy import silenced_by
     from ncsim_wifi.spatial.compiled.gaps import survival
+    from ncsim_wifi.spatial.compiled.occupancy import exact_occupancy
     from ncsim_wifi.spatial.compiled.overlap import helped_kill
 
-    return Forms(survival, joint_stages, silenced_by, helped_kill)
+    return Forms(survival, joint_stages, silenced_by, exact_occupancy, helped_kill)
 
 
 def forms_for(steps: int) -> Forms:

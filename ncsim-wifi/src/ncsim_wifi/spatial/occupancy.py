@@ -3,14 +3,19 @@
 Source: MODEL 3.3; ideal CSMA of Boorstyn (1987), Liew et al. (2010), Laufer and Kleinrock (2016).
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from typing_extensions import override
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
-from ncsim_wifi.spatial.belief import clique_belief
+from ncsim_wifi.spatial.belief import CliqueBelief, clique_belief
+
+FEW_SETS = 64
+ROUGH, FINE = 2.0**50, 2.0**92
+"""Weights of up to 1500 sets, rounded to these parts of one, have sums without any rounding."""
 
 
 class Occupancy(NamedTuple):
@@ -27,42 +32,57 @@ class Occupancy(NamedTuple):
     on: FloatArray
 
 
-class OccupancyModel(Protocol):
-    """Answers for one connected component of the sensing graph."""
-
-    def __call__(self, activity: FloatArray) -> Occupancy:
-        """Return the occupancy for rho, the activity of each station."""
-
-
-@dataclass(frozen=True)
-class ExactOccupancy(OccupancyModel):
-    """Sums over all independent sets.
+class SetTable(NamedTuple):
+    """All independent sets of some components of the sensing graph, smaller ones first.
 
     Args:
-        members: Which stations a set holds, shape (sets, stations), 0 or 1.
-        leaves_idle: Whether a set leaves a station and all it senses off.
+        component: The component of each set.
+        parent: The set that it extends by one station, itself for the empty ones.
+        added: That station.
+        level_ends: How many sets have at most 0, 1, 2, ... stations.
+        members: 1 for the stations that a set holds, shape (sets, all stations).
+        leaves_idle: 1 for stations of the component that it leaves off, with all they sense.
     """
 
+    component: IntArray
+    parent: IntArray
+    added: IntArray
+    level_ends: IntArray
     members: FloatArray
     leaves_idle: FloatArray
 
-    @override
-    def __call__(self, activity: FloatArray) -> Occupancy:
-        weight = np.exp(self.members @ np.log(activity))
-        weight /= weight.sum()
-        weighted = self.leaves_idle * weight[:, None]
-        idle = weighted.sum(axis=0)
-        clear = weighted.T @ self.leaves_idle / idle[:, None]
-        on = weighted.T @ self.members / idle[:, None]
-        return Occupancy(idle, clear, on)
+
+def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
+    """Return the sums over all independent sets; stations of other components see nothing.
+
+    Args:
+        table: The sets.
+        activity: rho of all stations.
+    """
+    weight = np.ones(len(table.component))
+    for begin, end in zip(table.level_ends, table.level_ends[1:], strict=False):
+        sets = slice(begin, end)
+        weight[sets] = weight[table.parent[sets]] * activity[table.added[sets]]
+    weight /= np.bincount(table.component, weight)[table.component]
+    rough = np.rint(weight * ROUGH) / ROUGH
+    fine = np.rint((weight - rough) * FINE) / FINE
+    held = np.concatenate([table.leaves_idle, table.members], axis=1)
+    sums = (table.leaves_idle.T * rough) @ held + (table.leaves_idle.T * fine) @ held
+    count = len(activity)
+    idle = sums.diagonal().copy()
+    given = sums / np.where(idle > 0.0, idle, 1.0)[:, None]
+    return Occupancy(idle, given[:, :count], given[:, count:])
 
 
-def independent_sets(senses: BoolArray, limit: int) -> FloatArray | None:
+def independent_sets(senses: BoolArray, limit: int) -> list[int] | None:
     """Return all sets of stations of which none senses another; ``None`` beyond a limit.
 
     Args:
         senses: Who senses whom, symmetric.
         limit: The most sets to list.
+
+    Returns:
+        Bit u of each is set if it holds station u.
     """
     neighbours = [sum(1 << int(w) for w in np.flatnonzero(row)) for row in senses]
     sets = [0]
@@ -70,43 +90,128 @@ def independent_sets(senses: BoolArray, limit: int) -> FloatArray | None:
         sets += [held | 1 << station for held in sets if not held & heard]
         if len(sets) > limit:
             return None
-    bits = np.array([[held >> u & 1 for u in range(len(neighbours))] for held in sets])
-    return bits.astype(np.float64)
+    return sets
 
 
-def occupancy_model(senses: BoolArray, max_sets: int) -> OccupancyModel:
-    """Return the exact sums, or belief propagation where there are too many sets."""
-    members = independent_sets(senses, max_sets)
-    if members is None:
-        return clique_belief(senses)
+def set_table(senses: BoolArray, components: Sequence[tuple[IntArray, Sequence[int]]]) -> SetTable:
+    """Return the table of independent sets.
+
+    Args:
+        senses: Who senses whom.
+        components: Stations of each component, and its sets as bits of places among these.
+    """
+    every = sorted(
+        (held.bit_count(), number, held)
+        for number, (_, sets) in enumerate(components)
+        for held in sets
+    )
+    place = {(number, held): at for at, (_, number, held) in enumerate(every)}
+    members = np.zeros((len(every), len(senses)))
+    inside = np.zeros((len(components), len(senses)))
+    parent, added = [], []
+    for number, (stations, _) in enumerate(components):
+        inside[number, stations] = 1.0
+    for at, (size, number, held) in enumerate(every):
+        stations = components[number][0]
+        last = held.bit_length() - 1
+        parent.append(place[number, held ^ (1 << last)] if size else at)
+        added.append(int(stations[last]) if size else 0)
+        members[at] = members[parent[-1]]
+        if size:
+            members[at, added[-1]] = 1.0
+    component = np.array([number for _, number, _ in every])
     closed = senses.astype(np.float64) + np.eye(len(senses))
-    return ExactOccupancy(members, (members @ closed == 0.0).astype(np.float64))
+    leaves_idle = (members @ closed == 0.0) * inside[component]
+    sizes = [size for size, _, _ in every]
+    return SetTable(
+        component,
+        np.array(parent),
+        np.array(added),
+        np.cumsum(np.bincount(sizes)),
+        members,
+        leaves_idle,
+    )
 
 
 @dataclass(frozen=True)
-class ComponentwiseOccupancy(OccupancyModel):
+class OccupancyModel:
     """Connected components of the sensing graph do not see each other.
 
     Args:
-        components: Stations of each, and its model.
+        senses: Who senses whom.
+        parts: Stations of each component, and all its independent sets unless there are too many.
     """
 
-    components: tuple[tuple[IntArray, OccupancyModel], ...]
+    senses: BoolArray
+    parts: tuple[tuple[IntArray, Sequence[int] | None], ...]
 
-    @override
-    def __call__(self, activity: FloatArray) -> Occupancy:
+    @cached_property
+    def _tables(self) -> list[tuple[IntArray, SetTable]]:
+        """Return the tables of components with all their sets, one for all small components."""
+        exact = [(stations, sets) for stations, sets in self.parts if sets is not None]
+        small = [part for part in exact if len(part[1]) <= FEW_SETS]
+        shared = [[part] for part in exact if len(part[1]) > FEW_SETS] + ([small] if small else [])
+        return [_table_of(self.senses, parts) for parts in shared]
+
+    @cached_property
+    def _beliefs(self) -> list[tuple[IntArray, CliqueBelief]]:
+        return [
+            (stations, clique_belief(self.senses[np.ix_(stations, stations)]))
+            for stations, sets in self.parts
+            if sets is None
+        ]
+
+    @cached_property
+    def _are_apart(self) -> BoolArray | None:
+        """Return who is in another component than whom; nobody if there is only one."""
+        if len(self.parts) == 1:
+            return None
+        number = np.empty(len(self.senses))
+        for at, (stations, _) in enumerate(self.parts):
+            number[stations] = at
+        return np.asarray(number[:, None] != number)
+
+    def __call__(
+        self,
+        activity: FloatArray,
+        exact_occupancy: Callable[[SetTable, FloatArray], Occupancy] = exact_occupancy,
+    ) -> Occupancy:
+        """Return the occupancy for rho, the activity of each station.
+
+        Args:
+            activity: rho.
+            exact_occupancy: Sums over independent sets.
+        """
         count = len(activity)
-        idle = np.empty(count)
-        clear = np.empty((count, count))
-        on = np.empty((count, count))
-        for stations, model in self.components:
-            within = model(activity[stations])
-            idle[stations] = within.idle
-            clear[:, stations] = within.idle
-            on[:, stations] = activity[stations] * within.idle
-            clear[np.ix_(stations, stations)] = within.clear
-            on[np.ix_(stations, stations)] = within.on
-        return Occupancy(idle, clear, on)
+        found = Occupancy(np.empty(count), np.empty((count, count)), np.empty((count, count)))
+        for stations, table in self._tables:
+            self._write(found, stations, exact_occupancy(table, activity[stations]))
+        for stations, model in self._beliefs:
+            self._write(found, stations, model(activity[stations]))
+        if self._are_apart is None:
+            return found
+        return Occupancy(
+            found.idle,
+            np.where(self._are_apart, found.idle, found.clear),
+            np.where(self._are_apart, activity * found.idle, found.on),
+        )
+
+    @staticmethod
+    def _write(found: Occupancy, stations: IntArray, within: Occupancy) -> None:
+        rows = stations[:, None]
+        found.idle[stations] = within.idle
+        found.clear[rows, stations], found.on[rows, stations] = within.clear, within.on
+
+
+def _table_of(
+    senses: BoolArray, parts: Sequence[tuple[IntArray, Sequence[int]]]
+) -> tuple[IntArray, SetTable]:
+    """Return the stations of some components, and the table of their sets."""
+    stations = np.concatenate([part for part, _ in parts])
+    ends = np.cumsum([len(part) for part, _ in parts]).tolist()
+    places = [np.arange(end - len(part), end) for (part, _), end in zip(parts, ends, strict=True)]
+    renamed = [(place, sets) for place, (_, sets) in zip(places, parts, strict=True)]
+    return stations, set_table(senses[np.ix_(stations, stations)], renamed)
 
 
 def connected_components(related: BoolArray) -> list[IntArray]:
@@ -129,7 +234,14 @@ def connected_components(related: BoolArray) -> list[IntArray]:
 
 
 def occupancy_of(senses: BoolArray, max_sets: int) -> OccupancyModel:
-    """Return the occupancy model of a sensing graph, component by component."""
+    """Return the occupancy model of a sensing graph.
+
+    Args:
+        senses: Who senses whom, symmetric.
+        max_sets: Independent sets of a component up to which it is exact, at most 1500.
+    """
     parts = connected_components(senses)
-    models = [(part, occupancy_model(senses[np.ix_(part, part)], max_sets)) for part in parts]
-    return models[0][1] if len(models) == 1 else ComponentwiseOccupancy(tuple(models))
+    return OccupancyModel(
+        senses,
+        tuple((part, independent_sets(senses[np.ix_(part, part)], max_sets)) for part in parts),
+    )

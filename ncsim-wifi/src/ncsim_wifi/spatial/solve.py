@@ -121,7 +121,9 @@ class FixedPoint:
         times = self._exchange()
         tau = attempt_probability(mean_count(self._stages))
         attempts = attempts_of(self._scene, tau, self._clear, self._able(), times)
-        occupancy = self._statics.occupancy(np.maximum(attempts.activity, LEAST_ACTIVITY))
+        occupancy = self._statics.occupancy(
+            np.maximum(attempts.activity, LEAST_ACTIVITY), self._forms.exact_occupancy
+        )
         gain = self._scene.settings.approximations.gain
         self._clear = gain * np.clip(occupancy.clear, 0.0, 1.0) + (1.0 - gain) * self._clear
         traffic = self._traffic(tau, attempts, occupancy, times)
