@@ -18,6 +18,7 @@ from ncsim_core.sweep.table import table_of
 from ncsim_core.testing.fixtures import write_dist
 
 NAUGHTY = """
+    import contextlib
     import os
     import time
 
@@ -47,6 +48,9 @@ NAUGHTY = """
                 os._exit(9)
             if self._mood == "hang":
                 while True:
+                    time.sleep(3600)
+            while self._mood == "deaf":
+                with contextlib.suppress(BaseException):
                     time.sleep(3600)
             if self._mood == "raise":
                 raise RuntimeError("no mood for work")
@@ -220,14 +224,17 @@ def test_a_run_that_kills_its_worker_is_a_failed_row_and_the_others_are_done(tmp
 
 
 def test_a_hanging_run_ends_at_the_wall_limit_and_the_others_are_done(tmp_path, ncsim):
-    moods = {"scheduler.options.mood": ["ok", "hang", "slow"]}
+    moods = {"scheduler.options.mood": ["ok", "hang", "deaf", "slow"]}
     path = sweep_file(tmp_path, moods, limits={"wall_s": 1.0})
     finish(ncsim("sweep", path, "-o", tmp_path / "study", "-j", 2), 2)
     rows = {row["scheduler.options.mood"]: row for row in records(tmp_path / "study")}
 
     assert [rows[mood]["status"] for mood in ("ok", "slow")] == ["completed"] * 2
-    assert rows["hang"]["status"] == "failed"
-    assert "wall limit of 1 s" in rows["hang"]["error"]
+    assert rows["hang"]["status"] == "limit_reached"
+    assert "wall limit of 1 s; it was in schedule (moody.py:" in rows["hang"]["error"]
+    assert "within schedule of scheduler 'moody' (moody 1.0)" in rows["hang"]["error"]
+    assert rows["deaf"]["status"] == "failed"
+    assert "gave no answer within the wall limit of 1 s" in rows["deaf"]["error"]
 
 
 def test_only_failed_runs_are_done_again_on_request(tmp_path, ncsim):

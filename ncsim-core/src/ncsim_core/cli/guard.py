@@ -5,25 +5,14 @@ interrupted a moment later, where the system has alarms, and the run says where 
 """
 
 import contextlib
-import signal
 import time
-import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
-from types import FrameType
-from typing import Final
 
+from ncsim_core.engine.alarm import GRACE_s, StuckError, alarm
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.errors import PluginError
 from ncsim_core.memory import limited_memory
-
-GRACE_s: Final = 1.0
-"""What a call that does not return gets beyond the limit."""
-
-
-class StuckError(BaseException):
-    """Time is up in the middle of a call; no ``Exception``, so that no plug-in swallows it."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +35,12 @@ class Guard:
             PluginError: A component did not return while the run was being built.
         """
         deadline_s = time.monotonic() + (float("inf") if self.wall_s is None else self.wall_s)
-        with limited_memory(self.memory_MB), _alarm(self.wall_s):
+        interrupted_s = None if self.wall_s is None else self.wall_s + GRACE_s
+        with limited_memory(self.memory_MB), alarm(interrupted_s):
             try:
                 yield deadline_s
             except StuckError as stuck:
-                raise PluginError(self.says(_place(stuck))) from None
+                raise PluginError(self.says(stuck.place)) from None
 
     def run(self, simulation: Simulation, deadline_s: float) -> None:
         """Run to the end, or until time is up."""
@@ -62,34 +52,11 @@ class Guard:
                 simulation.step()
             place = ""
         except StuckError as stuck:
-            place = _place(stuck)
+            place = stuck.place
         if simulation.outcome is None:
             simulation.give_up(self.says(place))
 
     def says(self, place: str) -> str:
         """Return why the run ended, and where it hung."""
-        return f"the limit of {self.wall_s:g} s on the clock{place}"
-
-
-def _place(stuck: StuckError) -> str:
-    frame = traceback.extract_tb(stuck.__traceback__)[-2]  # the last is the alarm's own
-    return f"; it was in {frame.name} ({Path(frame.filename).name}:{frame.lineno})"
-
-
-@contextlib.contextmanager
-def _alarm(wall_s: float | None) -> Iterator[None]:
-    if wall_s is None or not hasattr(signal, "setitimer"):
-        yield
-        return
-    before = signal.signal(signal.SIGALRM, _interrupt)
-    signal.setitimer(signal.ITIMER_REAL, wall_s + GRACE_s)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    del number, frame
-    raise StuckError
+        where = f"; {place}" if place else ""
+        return f"the limit of {self.wall_s:g} s on the clock{where}"

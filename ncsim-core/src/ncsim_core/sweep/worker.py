@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from ncsim_core.engine.accompanying import accompanied
+from ncsim_core.engine.alarm import GRACE_s, StuckError, alarm
 from ncsim_core.engine.outcome import Outcome, RunStatus
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
@@ -23,10 +24,8 @@ from ncsim_core.sweep.plan import RunLimits, plan_from_json
 from ncsim_core.sweep.resolving import Resolver
 from ncsim_core.units import us_from_s
 
-GRACE_s: Final = 1.0
-"""What a run that does not look at the clock gets beyond its wall limit before its worker ends."""
-
-
+LAST_GRACE_s: Final = 2.0
+"""What a call that cannot even be interrupted gets on top before its worker ends."""
 FIRST_RUN_s: Final = 5.0
 """What the first run of a worker gets on top, for it imports the plug-ins."""
 
@@ -109,10 +108,13 @@ def failed_row(key: str, error: str, wall_s: float = 0.0, status: str = "failed"
 def _result(item: Item, resolver: Resolver) -> ResultRow:
     started_s = time.perf_counter()
     limits = resolver.plan.limits
-    _set_alarm(limits)
+    interrupted_s = _interrupted_s(limits)
+    _set_last_alarm(interrupted_s)
     try:
-        with limited_memory(limits.memory_MB):
+        with limited_memory(limits.memory_MB), alarm(interrupted_s):
             return _simulated(item, resolver, limits, started_s)
+    except StuckError as stuck:
+        return _out_of_time(item, limits, started_s, stuck.place)
     except NcsimError as error:
         return failed_row(item.key, str(error), time.perf_counter() - started_s)
     except (Exception, SystemExit) as error:  # a plug-in may do anything; the sweep goes on
@@ -124,12 +126,24 @@ def _result(item: Item, resolver: Resolver) -> ResultRow:
             faulthandler.cancel_dump_traceback_later()
 
 
-def _set_alarm(limits: RunLimits) -> None:
-    """End this worker if a run hangs where the clock is not looked at; needs no GIL."""
+def _interrupted_s(limits: RunLimits) -> float | None:
+    """Return when a run that hangs where the clock is not looked at is interrupted."""
+    slack_s = GRACE_s if _WORKER.has_run else GRACE_s + FIRST_RUN_s
+    return None if limits.wall_s is None else limits.wall_s + slack_s
+
+
+def _set_last_alarm(interrupted_s: float | None) -> None:
+    """End this worker if a run cannot be interrupted; needs no GIL."""
     is_expendable = multiprocessing.parent_process() is not None
-    if limits.wall_s is not None and is_expendable:
-        slack_s = GRACE_s if _WORKER.has_run else GRACE_s + FIRST_RUN_s
-        faulthandler.dump_traceback_later(limits.wall_s + slack_s, exit=True, file=_nowhere())
+    if interrupted_s is not None and is_expendable:
+        last_s = interrupted_s + LAST_GRACE_s
+        faulthandler.dump_traceback_later(last_s, exit=True, file=_nowhere())
+
+
+def _out_of_time(item: Item, limits: RunLimits, started_s: float, place: str = "") -> ResultRow:
+    error = f"the wall limit of {limits.wall_s:g} s{'; ' if place else ''}{place}"
+    wall_s = time.perf_counter() - started_s
+    return failed_row(item.key, error, wall_s, str(RunStatus.LIMIT_REACHED))
 
 
 def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: float) -> ResultRow:
@@ -140,10 +154,9 @@ def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: flo
     simulation = Simulation(assembly.network, assembly.models, engine_limits)
     with accompanied(simulation, scenario.name, scenario.config.seed):
         outcome = _run(simulation, limits.wall_s)
-    wall_s = time.perf_counter() - started_s
     if outcome is None:
-        error = f"the wall limit of {limits.wall_s:g} s"
-        return failed_row(item.key, error, wall_s, str(RunStatus.LIMIT_REACHED))
+        return _out_of_time(item, limits, started_s)
+    wall_s = time.perf_counter() - started_s
     transfers = simulation.state.transfers.values()
     return ResultRow(
         item.key,
