@@ -79,6 +79,7 @@ class RunProgress(Observer):
     """Shows how many tasks of a run have ended."""
 
     wants_rates = False
+    may_lag = True
 
     def __init__(self, line: ProgressLine) -> None:
         self._line = line

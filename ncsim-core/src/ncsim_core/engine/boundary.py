@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from typing_extensions import override
 
+from ncsim_core.builtin.queue_models import FifoQueue
 from ncsim_core.contracts.interference_model import Competition, InterferenceSession, RouteRates
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.scheduler import NetworkSnapshot
@@ -197,6 +198,11 @@ class CheckedQueue:
 
     def __len__(self) -> int:
         return len(self._waiting)
+
+    @property
+    def is_first_in_first_out(self) -> bool:
+        """Return whether the component is known to do no more than that."""
+        return type(self._queue) is FifoQueue
 
     def push(self, task: WaitingTask) -> None:
         """Add a task."""

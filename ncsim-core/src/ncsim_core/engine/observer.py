@@ -56,6 +56,10 @@ class Observer:
     wants_rates = True
     """Whether ``rates_assigned`` is called; without it runs are a little faster."""
 
+    may_lag = False
+    """Whether calls may come some thousand events late, in the same order; for those who look at
+    nothing but what they are told. Compiled runs are only for such observers."""
+
     def run_started(self, setup: Setup) -> None:
         """Called once, before the first event."""
 

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Final, TypeAlias, assert_never
+from typing import TYPE_CHECKING, Final, TypeAlias, assert_never
 
 from ncsim_core.engine.event_queue import Due
 from ncsim_core.engine.events import DAG_INJECT, Event, EventKind
+from ncsim_core.engine.looping import compiled_run_of
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.outcome import Outcome, RunStatus
 from ncsim_core.engine.setup import Limits, Reach, Setup
@@ -21,6 +22,9 @@ from ncsim_core.errors import EngineError, NcsimError
 from ncsim_core.models import Models
 from ncsim_core.network import Network
 from ncsim_core.units import HORIZON_us, s_from_us
+
+if TYPE_CHECKING:
+    from ncsim_core.engine.compiled.compiled_run import CompiledRun
 
 MAX_LINES_IN_DETAIL = 20
 
@@ -78,7 +82,9 @@ class Simulation:
         reach: Reach = Reach.LOCAL,
     ) -> None:
         self.setup = Setup.of(network, models, limits or Limits(), reach)
-        self.state = State.of(self.setup)
+        self._state = State.of(self.setup)
+        self._compiled: CompiledRun | None = None
+        self._is_behind = False
         self.outcome: Outcome | None = None
         chosen = self.setup.limits
         self._max_events = math.inf if chosen.max_events is None else chosen.max_events
@@ -86,9 +92,17 @@ class Simulation:
         if chosen.max_time_us is not None:
             self._last_us = min(HORIZON_us, chosen.max_time_us)
         for number, injection in enumerate(self.setup.injections):
-            self.state.queue.push(injection.at_us, DAG_INJECT, number)
+            self._state.queue.push(injection.at_us, DAG_INJECT, number)
         for observer in observers:
             self.observe(observer)
+
+    @property
+    def state(self) -> State:
+        """Return everything about the run that changes, as of now."""
+        if self._compiled is not None and self._is_behind:
+            self._is_behind = False
+            self._compiled.unload()
+        return self._state
 
     def observe(self, observer: Observer) -> None:
         """Let somebody watch the rest of the run.
@@ -96,7 +110,7 @@ class Simulation:
         Raises:
             ValueError: The first event has been handled already.
         """
-        state = self.state
+        state = self._state
         if state.events or self.outcome is not None:
             raise ValueError("observers must be added before the first event is handled")
         state.observers += (observer,)
@@ -106,6 +120,8 @@ class Simulation:
 
     def run(self) -> Outcome:
         """Step until the run ends, and return how it did."""
+        if self._compiled is None and not self._state.events and self.outcome is None:
+            self._compiled = compiled_run_of(self._state, self.setup, self._last_us)
         while self.outcome is None:
             self._advance(EVENTS_AT_A_TIME)
         return self.outcome
@@ -125,31 +141,42 @@ class Simulation:
 
     def _advance(self, count: int) -> Due | None:
         """Handle up to ``count`` events and return the last, ``None`` if the run ended instead."""
-        state, setup, pop = self.state, self.setup, self.state.queue.pop
-        last_us, max_events = self._last_us, self._max_events
-        due: Due | None = None
         try:
-            for _ in range(count):
-                due = pop()
-                if (
-                    due is None
-                    or not state.now_us <= due[0] <= last_us
-                    or state.events >= max_events
-                ):
-                    self._end_without_event(due)
-                    return None
-                state.now_us, kind, _, _, number = due
-                state.events += 1
-                HANDLERS[kind](number, state, setup)
-                if state.unroutable:
-                    self._end(RunStatus.UNROUTABLE, _unroutable_detail(state))
-                    return due
+            if self._compiled is None:
+                return self._handle(count)
+            return self._handle_compiled(count, self._compiled)
         except EngineError:
             raise
         except NcsimError as error:
             self._end(RunStatus.FAILED, str(error))
             return None
+
+    def _handle(self, count: int) -> Due | None:
+        state, setup, pop = self._state, self.setup, self._state.queue.pop
+        last_us, max_events = self._last_us, self._max_events
+        due: Due | None = None
+        for _ in range(count):
+            due = pop()
+            if due is None or not state.now_us <= due[0] <= last_us or state.events >= max_events:
+                self._end_without_event(due)
+                return None
+            state.now_us, kind, _, _, number = due
+            state.events += 1
+            HANDLERS[kind](number, state, setup)
+            if state.unroutable:
+                self._end(RunStatus.UNROUTABLE, _unroutable_detail(state))
+                return due
         return due
+
+    def _handle_compiled(self, count: int, run: "CompiledRun") -> Due | None:
+        self._is_behind = True
+        goes_on = run.advance(count)
+        if self._state.unroutable:
+            self._end(RunStatus.UNROUTABLE, _unroutable_detail(self._state))
+        elif not goes_on:
+            self._end_without_event(run.due)
+            return None
+        return run.due
 
     def give_up(self, detail: str) -> None:
         """End the run with status ``limit_reached`` for a reason of the caller's.
@@ -159,10 +186,12 @@ class Simulation:
         """
         if self.outcome is not None:
             raise ValueError("this run has ended")
+        if self._compiled is not None:
+            self._compiled.catch_up()
         self._end(RunStatus.LIMIT_REACHED, detail)
 
     def _end_without_event(self, due: Due | None) -> None:
-        state, limits = self.state, self.setup.limits
+        state, limits = self._state, self.setup.limits
         if due is None:
             self._end_with_nothing_left()
         elif due[0] < state.now_us:
@@ -176,10 +205,11 @@ class Simulation:
             self._end(RunStatus.LIMIT_REACHED, f"the limit of {limit_s} simulated seconds")
 
     def _end_with_nothing_left(self) -> None:
-        state = self.state
-        if state.unfinished_tasks == 0:
+        if self._state.unfinished_tasks == 0:
             self._end(RunStatus.COMPLETED, "")
-        elif state.flows:
+            return
+        state = self.state
+        if state.flows:
             self._end(RunStatus.BLOCKED_WIRELESS, _blocked_detail(state, self.setup))
         else:
             raise EngineError(
@@ -187,7 +217,7 @@ class Simulation:
             )
 
     def _end(self, status: RunStatus, detail: str) -> None:
-        state = self.state
+        state = self._state
         makespan_us = state.last_task_end_us if status is RunStatus.COMPLETED else None
         self.outcome = Outcome(status, state.now_us, makespan_us, state.events, detail)
         for observer in state.observers:

@@ -1,11 +1,13 @@
 """Tasks: injection, readiness, queueing, running."""
 
+from collections.abc import Iterable
+
 from ncsim_core.contracts.queue_model import WaitingTask
 from ncsim_core.contracts.scheduler import ActiveTransfer, NetworkSnapshot
 from ncsim_core.engine.boundary import checked_placement
 from ncsim_core.engine.events import TASK_COMPLETE, TASK_READY, TASK_START
 from ncsim_core.engine.setup import Setup
-from ncsim_core.engine.state import NodeState, State, TaskRun, TaskStatus
+from ncsim_core.engine.state import NodeState, State, TaskRun, TaskStatus, Transfer
 from ncsim_core.engine.transfers import create_transfer, deliver_input
 from ncsim_core.errors import EngineError
 from ncsim_core.units import s_from_us, us_from_s
@@ -17,21 +19,26 @@ READY, QUEUED, RUNNING, COMPLETED = (
 
 def inject_dag(dag_number: int, state: State, setup: Setup) -> None:
     """Plan a DAG, check that its data can travel, and release the tasks that wait for nothing."""
-    dag = setup.injections[dag_number].dag
-    nodes = checked_placement(setup.models, dag, snapshot(state, setup))
+    place_dag(dag_number, snapshot(state, setup), state, setup)
+    if state.unroutable:
+        return
     first = setup.first_task[dag_number]
-    runs = state.tasks[first : first + len(dag.tasks)]
-    for run, node in zip(runs, nodes, strict=True):
+    for run in state.tasks[first : first + len(setup.injections[dag_number].dag.tasks)]:
+        if run.missing == 0:
+            state.queue.push(state.now_us, TASK_READY, run.entry.number)
+
+
+def place_dag(dag_number: int, seen: NetworkSnapshot, state: State, setup: Setup) -> None:
+    """Plan a DAG, tell those who watch, and note what in it has no route."""
+    dag = setup.injections[dag_number].dag
+    nodes = checked_placement(setup.models, dag, seen)
+    first = setup.first_task[dag_number]
+    for run, node in zip(state.tasks[first : first + len(nodes)], nodes, strict=True):
         run.node = node
         state.free_tasks_placed += run.entry.task.pinned_to is None
     for observer in state.observers:
         observer.dag_injected(state.now_us, dag_number, nodes)
     state.unroutable += unroutable_dependencies(dag_number, state, setup)
-    if state.unroutable:
-        return
-    for run in runs:
-        if run.missing == 0:
-            state.queue.push(state.now_us, TASK_READY, run.entry.number)
 
 
 def unroutable_dependencies(dag_number: int, state: State, setup: Setup) -> list[str]:
@@ -55,21 +62,30 @@ def _unroutable_line(source: TaskRun, target: TaskRun, setup: Setup) -> str:
 
 def snapshot(state: State, setup: Setup) -> NetworkSnapshot:
     """Return what a scheduler may see now."""
+    depths = [len(node.queue) + (node.task is not None) for node in state.nodes]
+    under_way = [each for each in state.transfers.values() if each.is_under_way]
+    return snapshot_of(depths, under_way, state, setup)
+
+
+def snapshot_of(
+    queue_depths: Iterable[int], under_way: Iterable[Transfer], state: State, setup: Setup
+) -> NetworkSnapshot:
+    """Return what a scheduler may see of nodes, and of the transfers under way as created."""
     return NetworkSnapshot(
         network=setup.network,
         routes=setup.routes,
         now_s=s_from_us(state.now_us),
-        queue_depths=tuple(len(node.queue) + (node.task is not None) for node in state.nodes),
-        active_transfers=tuple(_active_transfers(state, setup)),
+        queue_depths=tuple(queue_depths),
+        active_transfers=tuple(_active_transfers(under_way, state, setup)),
         free_tasks_placed=state.free_tasks_placed,
     )
 
 
-def _active_transfers(state: State, setup: Setup) -> list[ActiveTransfer]:
+def _active_transfers(
+    under_way: Iterable[Transfer], state: State, setup: Setup
+) -> list[ActiveTransfer]:
     active = []
-    for transfer in state.transfers.values():
-        if not transfer.is_under_way:
-            continue
+    for transfer in under_way:
         source, target = (state.tasks[n] for n in (transfer.entry.source, transfer.entry.target))
         elapsed_s = s_from_us(state.now_us - transfer.credited_us)
         active.append(
@@ -97,7 +113,7 @@ def task_becomes_ready(task: int, state: State, setup: Setup) -> None:
         run.status = READY
     else:
         run.status = QUEUED
-        node.queue.push(_waiting_task(run, setup))
+        node.queue.push(waiting_task(run, setup))
 
 
 def start_task(task: int, state: State, setup: Setup) -> None:
@@ -143,7 +159,8 @@ def _reserve(node: NodeState, task: int, state: State) -> None:
     state.queue.push(state.now_us, TASK_START, task)
 
 
-def _waiting_task(run: TaskRun, setup: Setup) -> WaitingTask:
+def waiting_task(run: TaskRun, setup: Setup) -> WaitingTask:
+    """Return what a queue is told of a task."""
     dag = setup.injections[run.entry.dag].dag
     task = run.entry.task
     return WaitingTask(dag.id, task.id, task.compute_cost, run.ready_us or 0, run.entry.number)

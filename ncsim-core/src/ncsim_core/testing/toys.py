@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from ncsim_core.builtin.link_models import StaticLinkModel
 from ncsim_core.builtin.queue_models import FifoQueue
 from ncsim_core.builtin.schedulers import RoundRobinScheduler
 from ncsim_core.contracts.interference_model import Competition, InterferenceModel, RouteRates
+from ncsim_core.contracts.interference_tables import InterferenceTables, ShareRow
 from ncsim_core.contracts.queue_model import QueueModel
 from ncsim_core.contracts.routing_model import RoutingModel
 from ncsim_core.contracts.scheduler import Scheduler
@@ -75,6 +77,57 @@ class ToyRadio(InterferenceModel):
         contenders = others.intersection(self._neighbours.get(link, ()))
         hidden = others.intersection(self._hidden.get(link, ())) - contenders
         return Competition(len(contenders), len(hidden), 0.75 ** len(hidden))
+
+
+class TabledRadio(ToyRadio):
+    """The same as data, for the engine's own sessions and its compiled loop.
+
+    Args:
+        link_count: Links of the network.
+        neighbours: As of a ``ToyRadio``; a link named among its own is not counted.
+        hidden: Likewise.
+        stop_at: Likewise.
+    """
+
+    def __init__(
+        self,
+        link_count: int,
+        neighbours: Mapping[LinkIndex, Collection[LinkIndex]],
+        hidden: Mapping[LinkIndex, Collection[LinkIndex]] = MappingProxyType({}),
+        *,
+        stop_at: int = 99,
+    ) -> None:
+        super().__init__(neighbours, hidden, stop_at=stop_at)
+        self._tables = self._made(link_count)
+
+    @override
+    def tables(self) -> InterferenceTables:
+        return self._tables
+
+    def _made(self, link_count: int) -> InterferenceTables:
+        import numpy as np
+
+        pairs = []
+        for link in range(link_count):
+            near = set(self._neighbours.get(link, ())) - {link}
+            far = set(self._hidden.get(link, ())) - near - {link}
+            pairs += [(by, link, by in near) for by in near | far]
+        pairs.sort()
+        levels = [len(set(self._hidden.get(link, ()))) + 1 for link in range(link_count)]
+        rows = [ShareRow(partial(self._share, hidden)) for hidden in range(max(levels))]
+        return InterferenceTables(
+            starts=np.searchsorted([by for by, _, _ in pairs], np.arange(link_count + 1)),
+            links=np.array([link for _, link, _ in pairs], np.int32),
+            is_conflict=np.array([is_near for _, _, is_near in pairs], np.bool_),
+            hidden_units=np.ones(len(pairs), np.int64),
+            limits=[tuple(range(count - 1)) for count in levels],
+            shares=[rows[:count] for count in levels],
+            hidden_factors=[[0.75**hidden for hidden in range(count)] for count in levels],
+        )
+
+    def _share(self, hidden: int, stations: int) -> float:
+        against = Competition(stations - 1, hidden, 0.75**hidden)
+        return self._contention(against) * against.hidden_factor
 
 
 class ToyRelays(InterferenceModel):

@@ -30,6 +30,8 @@ class RunRecorder(Observer):
             those of a full trace and memory does not grow with the number of rates.
     """
 
+    may_lag = True
+
     def __init__(
         self,
         header: TraceHeader | None = None,

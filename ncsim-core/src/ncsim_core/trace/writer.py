@@ -76,6 +76,8 @@ class TraceWriter(Observer):
             least every quarter of a second, for those who follow a run.
     """
 
+    may_lag = True
+
     def __init__(
         self,
         target: Path | str | TextIO,

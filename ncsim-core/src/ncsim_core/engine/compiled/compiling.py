@@ -1,0 +1,72 @@
+"""How the functions of this folder are compiled, and how they read records.
+
+Arrays are handed over as addresses. numba counts references to every array at every call, which
+took ten times as long as what the functions do, and half a minute to compile.
+"""
+
+import ctypes
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any, Final, TypeAlias, TypeVar, cast
+
+import numpy as np
+
+F = TypeVar("F", bound=Callable[..., object])
+
+Record: TypeAlias = Any
+"""``record.field`` reads and writes; numpy's types do not know the fields."""
+
+
+def _numba() -> ModuleType | None:
+    try:
+        import numba
+    except ImportError:
+        return None
+    module: ModuleType = numba
+    return None if module.config.DISABLE_JIT else module  # those set it who look for a fault
+
+
+NUMBA: Final = _numba()
+
+
+def inlined(function: F) -> F:
+    """Return a function to be compiled with its callers; as it is without numba.
+
+    Not kept on disk: what is kept is the loop, of which it becomes part. Only compiled functions
+    may call it, since it has no wrappers for others.
+    """
+    if NUMBA is None:
+        return function
+    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast("F", NUMBA.njit(**options)(function))
+
+
+def kept_on_disk(function: F) -> F:
+    """Return a function compiled, and kept where that is possible; as it is without numba."""
+    if NUMBA is None:
+        return function
+    try:
+        return cast("F", NUMBA.njit(cache=True, error_model="numpy")(function))
+    except RuntimeError:  # no folder to keep it in
+        return cast("F", NUMBA.njit(error_model="numpy")(function))
+
+
+def reader(dtype: "np.dtype[np.void]") -> Callable[[int], Record]:
+    """Return what gives the record at an address."""
+    if NUMBA is None:
+        return lambda address: _record_in_memory(int(address), dtype)
+    intrinsic, record_type = NUMBA.extending.intrinsic, NUMBA.from_dtype(dtype)
+
+    @intrinsic  # type: ignore[untyped-decorator]
+    def record_at(_typing: Record, _address: Record) -> Record:
+        def generate(target: Record, builder: Record, _: Record, arguments: Record) -> Record:
+            return builder.inttoptr(arguments[0], target.get_value_type(record_type))
+
+        return record_type(NUMBA.types.int64), generate
+
+    return cast("Callable[[int], Record]", record_at)
+
+
+def _record_in_memory(address: int, dtype: "np.dtype[np.void]") -> Record:
+    memory: Record = (ctypes.c_char * dtype.itemsize).from_address(address)
+    return np.frombuffer(memory, dtype).view(np.recarray)[0]

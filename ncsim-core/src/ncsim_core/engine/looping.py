@@ -1,0 +1,78 @@
+"""Whether a run goes through the compiled loop; its results are the same either way.
+
+The loop pays for itself only in long runs, since numba takes two seconds to start: it is used once
+the runs of a process come to ``WORTH_COMPILING_us``, or at once if numba is loaded.
+"""
+
+import os
+import sys
+from functools import cache
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Final
+
+from ncsim_core.engine.sessions.choice import loads_of
+from ncsim_core.engine.setup import Setup
+from ncsim_core.engine.state import State
+from ncsim_core.units import Instant
+
+if TYPE_CHECKING:
+    from ncsim_core.engine.compiled.compiled_run import CompiledRun
+
+SAVED_us: Final = 8
+SAVED_WITH_RADIO_us: Final = 25
+"""What the loop saves at a start or finish of a transfer, about."""
+
+WORTH_COMPILING_us: Final = 2_000_000
+"""What has to be saved; about what it takes to start numba and to load the loop."""
+
+_saved_so_far_us = 0
+
+
+def compiled_run_of(state: State, setup: Setup, last_us: Instant) -> "CompiledRun | None":
+    """Return the run in the compiled loop, if it can be done there and is worth it.
+
+    Args:
+        state: Of the run before its first event.
+        setup: Of the run.
+        last_us: No event after this is handled.
+    """
+    if not is_possible(state, setup) or not is_worth_compiling(setup):
+        return None
+    from ncsim_core.engine.compiled.compiled_run import CompiledRun
+
+    return CompiledRun(state, setup, last_us)
+
+
+def is_possible(state: State, setup: Setup) -> bool:
+    """Return whether all that decides in a run is known to the compiled loop.
+
+    That is: links affect each other by tables or not at all, lines on nodes are first in, first
+    out, and who watches need not see the state at that time.
+    """
+    if setup.is_global or setup.decides_routes:
+        return False
+    tables = setup.models.interference.tables()
+    if state.interference is not None and (tables is None or not loads_of(tables).fits):
+        return False
+    lines_are_plain = all(node.queue.is_first_in_first_out for node in state.nodes)
+    return lines_are_plain and all(observer.may_lag for observer in state.observers)
+
+
+def is_worth_compiling(setup: Setup) -> bool:
+    """Return whether a run of this length, after those so far, should be compiled."""
+    global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
+    if not may_compile():
+        return False
+    saved_us = SAVED_us if setup.models.interference.tables() is None else SAVED_WITH_RADIO_us
+    _saved_so_far_us += saved_us * 2 * len(setup.dependencies)
+    return "numba" in sys.modules or _saved_so_far_us >= WORTH_COMPILING_us
+
+
+def may_compile() -> bool:
+    """Return whether numba is installed and ``NCSIM_PURE=1`` does not forbid it."""
+    return os.environ.get("NCSIM_PURE", "") != "1" and _has_numba()
+
+
+@cache
+def _has_numba() -> bool:
+    return find_spec("numba") is not None
