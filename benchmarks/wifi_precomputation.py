@@ -66,7 +66,7 @@ def build(rows: int, columns: int, spacing_m: int) -> None:
     related = timed("conflict graph and hidden powers", lambda: relations(context, Radio()))
     model = timed("thresholds of all links", lambda: csma_bianchi(context))
     tables = timed("tables", model.tables)
-    timed("session", lambda: session_for(model, tables, 0))
+    timed("session", lambda: session_for(model, tables))
     print(f"  {'together':38} {time.process_time() - start:8.3f} s")
     timed("the same again, from the cache", lambda: csma_bianchi(context).tables())
     print(f"  {'memory added':38} {_peak_MB() - before_MB:8.0f} MB")
@@ -81,7 +81,7 @@ def refresh(rows: int, columns: int, transfers: int, hops: int) -> None:
 
     network = grid(rows, columns)
     model = csma_bianchi(BuildContext(network, cache=ModelCache()))
-    session = session_for(model, model.tables(), 0)
+    session = session_for(model, model.tables())
     traffic = Traffic(network, session, hops)
     for _ in range(transfers):
         traffic.start()

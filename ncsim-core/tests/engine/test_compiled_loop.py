@@ -5,6 +5,9 @@ Without numba the same functions run as plain Python here.
 
 import contextlib
 import io
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
@@ -15,9 +18,18 @@ from ncsim_core.contracts.scheduler import Scheduler
 from ncsim_core.engine import looping
 from ncsim_core.engine import simulation as simulation_module
 from ncsim_core.engine.compiled import telling
+from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.outcome import RunStatus
+from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
-from ncsim_core.testing.engine_cases import engine_cases
+from ncsim_core.errors import EngineError
+from ncsim_core.network import Link, Network, Node
+from ncsim_core.testing.builders import rated
+from ncsim_core.testing.engine_cases import EngineCase, engine_cases
+from ncsim_core.testing.toys import TabledRadio, models
+from ncsim_core.trace.records import TraceError
 from ncsim_core.trace.writer import TraceWriter
+from ncsim_core.workflow import DAG, Dependency, Injection, Task
 
 IS_NIGHTLY = settings.get_current_profile_name() == "nightly"
 
@@ -147,3 +159,120 @@ def test_the_engine_in_python_could_go_on_from_the_state_of_a_compiled_run(case,
 
     assert steps(handed_over) == steps(python)
     assert picture(handed_over.state) == picture(python.state)
+
+
+class FailingObserver(Observer):
+    """Fails when the third transfer starts, as a writer does when the disk is full."""
+
+    may_lag = True
+
+    def __init__(self):
+        self._started = 0
+
+    def transfer_started(self, at_us, transfer, route, size_MB):
+        self._started += 1
+        if self._started == 3:
+            raise TraceError("the disk is full")
+
+
+class Choking(TabledRadio):
+    """Fails when three links share the channel."""
+
+    def _share(self, hidden, stations):
+        if stations > 2:
+            raise RuntimeError(f"{stations} are too many")
+        return super()._share(hidden, stations)
+
+
+def star(model=None, limits=None):
+    """Return five transfers that meet on the middle node, one after the other."""
+    nodes = tuple(Node(f"n{k}", 100.0) for k in range(6))
+    network = rated(Network(nodes, tuple(Link(f"l{k}", f"n{k}", "n0", 1.0) for k in range(1, 6))))
+    tasks = [Task("hub", 1.0, "n0"), *(Task(f"t{k}", 10.0 * k, f"n{k}") for k in range(1, 6))]
+    edges = [Dependency(f"t{k}", "hub", 10.0) for k in range(1, 6)]
+    injected = [Injection(0, DAG("d", tuple(tasks), tuple(edges)))]
+    links = len(network.links)
+    everyone = {link: range(links) for link in range(links)}
+    chosen = models(network, injected, interference=(model or TabledRadio)(links, everyone))
+    return EngineCase(network, chosen, limits or Limits())
+
+
+ENDS = {
+    "an observer fails": (lambda: (star(), FailingObserver()), RunStatus.FAILED),
+    "a share fails": (lambda: (star(Choking),), RunStatus.FAILED),
+    "enough events": (lambda: (star(limits=Limits(max_events=7)),), RunStatus.LIMIT_REACHED),
+    "no event": (lambda: (star(limits=Limits(max_events=0)),), RunStatus.LIMIT_REACHED),
+    "enough time": (lambda: (star(limits=Limits(max_time_us=999)),), RunStatus.LIMIT_REACHED),
+    "all done": (lambda: (star(),), RunStatus.COMPLETED),
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_every_end_is_the_same(end):
+    make, status = ENDS[end]
+    python, _ = simulation_of(*make())
+    compiled, _ = simulation_of(*make())
+
+    outcome = compiled.run()
+
+    assert compiled._compiled is not None
+    assert outcome == steps(python)
+    assert outcome.status is status
+
+
+def test_who_watches_is_told_up_to_the_share_that_fails():
+    traces = io.StringIO(), io.StringIO()
+    python, _ = simulation_of(star(Choking), TraceWriter(traces[0]))
+    compiled, _ = simulation_of(star(Choking), TraceWriter(traces[1]))
+
+    assert compiled.run() == steps(python)
+    assert traces[1].getvalue() == traces[0].getvalue()
+
+
+def test_a_compiled_run_can_be_given_up():
+    trace = io.StringIO()
+    simulation = interrupted_after(9, simulation_of(star(), TraceWriter(trace))[0])
+
+    simulation.give_up("no patience")
+
+    assert simulation.outcome.status is RunStatus.LIMIT_REACHED
+    assert simulation.outcome.events == 9
+    assert '"events":9' in trace.getvalue()
+
+
+def test_a_task_that_starts_on_a_node_of_another_is_an_engine_error():
+    simulation = interrupted_after(2, simulation_of(star())[0])
+    simulation._compiled._arrays["nodes"].task[:] = 0
+
+    with pytest.raises(EngineError, match="starts on a node reserved for another"):
+        simulation.run()
+
+
+def test_without_numba_the_same_functions_run_as_plain_python():
+    code = """
+from hypothesis import Phase, given, settings
+from ncsim_core.engine import looping
+from ncsim_core.engine.compiled import compiling
+from ncsim_core.engine.simulation import Simulation
+from ncsim_core.testing.engine_cases import engine_cases
+from ncsim_core.api import result_of
+
+assert compiling.NUMBA is None
+looping.is_worth_compiling = lambda _: True
+
+@settings(max_examples=25, database=None, derandomize=True, deadline=None, phases=[Phase.generate])
+@given(engine_cases(is_compilable=True))
+def agree(case):
+    compiled, python = (Simulation(case.network, case.models, case.limits) for _ in range(2))
+    outcome = compiled.run()
+    while python.step():
+        pass
+    assert compiled._compiled is not None
+    assert outcome == python.outcome
+    assert result_of(compiled) == result_of(python)
+
+agree()
+"""
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)

@@ -14,7 +14,6 @@ from ncsim_core.contracts.interference_model import PlainSession
 from ncsim_core.engine.sessions import array_session, loads, tabled_session
 from ncsim_core.engine.sessions.array_session import ArraySession
 from ncsim_core.engine.sessions.choice import loads_of, session_for
-from ncsim_core.engine.sessions.kernel_session import KernelSession
 from ncsim_core.engine.sessions.row_session import RowSession
 from ncsim_core.generators.paper import paper_grid, parallel_links
 from ncsim_core.testing.builders import make_context
@@ -49,7 +48,6 @@ def test_factors_are_those_of_the_formulas_taken_literally(scene, chosen):
 
 
 SESSIONS = {"rows": RowSession, "matrix": ArraySession, "lists": ArraySession}
-SESSIONS["kernels"] = KernelSession
 
 
 def session_on(model, form="rows"):
@@ -83,11 +81,11 @@ def test_tables_too_large_for_sums_of_64_bits_fall_back_to_the_plain_form(monkey
     model = model_of(paper_grid(3))
     monkeypatch.setattr(loads, "LOAD_BITS", 40)
 
-    assert type(session_for(model, model.tables(), 1)) is PlainSession
+    assert type(session_for(model, model.tables())) is PlainSession
 
 
 @settings(max_examples=60)
-@given(SCENES, TOGGLES, st.sampled_from(["rows", "matrix", "kernels"]))
+@given(SCENES, TOGGLES, st.sampled_from(["rows", "matrix"]))
 def test_sessions_equal_global_refresh_bit_by_bit(scene, toggles, form):
     count = len(scene.senders_m)
     model = model_of(scene.network())

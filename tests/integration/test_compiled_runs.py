@@ -1,7 +1,8 @@
-"""Compiled kernels change how long a run takes and nothing else."""
+"""Compiled loops change how long a run takes and nothing else."""
 
 import io
 import os
+import random
 import subprocess
 import sys
 
@@ -9,14 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ncsim_core.api import prepare
-from ncsim_core.engine.sessions import choice
-from ncsim_core.engine.sessions.choice import may_compile, session_for
-from ncsim_core.engine.sessions.kernel_session import KernelSession
-from ncsim_core.engine.sessions.row_session import RowSession
+from ncsim_core.engine import looping
+from ncsim_core.engine.looping import may_compile
+from ncsim_core.engine.observer import Observer
 from ncsim_core.generators.dags import Form, dag_of
 from ncsim_core.generators.paper import paper_grid
 from ncsim_core.scenario.making import make_scenario
 from ncsim_core.trace.writer import TraceWriter
+from ncsim_core.units import HORIZON_us
 
 HAS_NUMBA = may_compile()
 needs_numba = pytest.mark.skipif(not HAS_NUMBA, reason="numba is not installed")
@@ -33,9 +34,9 @@ RADIOS = st.fixed_dictionaries(
 )
 
 
-def scenario_of(size, edges, radio, floor=0.0):
+def scenario_of(size, edges, radio, floor=0.0, tasks=14):
     pairs = {(f"T{min(a, b)}", f"T{max(a, b)}"): None for a, b in edges if a != b}
-    dag = dag_of(Form([f"T{number}" for number in range(14)], list(pairs)), dag_id="drawn")
+    dag = dag_of(Form([f"T{number}" for number in range(tasks)], list(pairs)), dag_id="drawn")
     config = {
         "scheduler": "round_robin",
         "routing": "minimum_hop",
@@ -45,10 +46,10 @@ def scenario_of(size, edges, radio, floor=0.0):
     return make_scenario("drawn", paper_grid(size), [dag], config)
 
 
-def trace_of(scenario, worth_kernels):
+def trace_of(scenario, *, is_compiled):
     trace = io.StringIO()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(choice, "is_worth_kernels", lambda _: worth_kernels)
+        patch.setattr(looping, "is_worth_compiling", lambda _: is_compiled)
         prepare(scenario, observers=[TraceWriter(trace)]).run()
     return trace.getvalue()
 
@@ -59,35 +60,77 @@ def trace_of(scenario, worth_kernels):
 def test_pure_and_compiled_runs_leave_the_same_trace_byte_by_byte(size, edges, radio, floor):
     scenario = scenario_of(size, edges, radio, floor)
 
-    assert trace_of(scenario, worth_kernels=True) == trace_of(scenario, worth_kernels=False)
+    assert trace_of(scenario, is_compiled=True) == trace_of(scenario, is_compiled=False)
 
 
-def model_and_tables():
-    setup = prepare(scenario_of(3, [(0, 1)], {})).setup
-    return setup.models.interference, setup.models.interference.tables()
+@needs_numba
+def test_long_runs_under_the_radio_are_the_same_compiled():
+    draw = random.Random(5)
+    edges = [(draw.randrange(k), k) for k in range(1, 150) for _ in range(3)]
+    scenario = scenario_of(6, edges, {}, floor=0.01, tasks=150)
+
+    assert trace_of(scenario, is_compiled=True) == trace_of(scenario, is_compiled=False)
+
+
+class Live(Observer):
+    """Looks at the run while it goes on."""
+
+
+@pytest.fixture
+def numba_is_unused(monkeypatch):
+    monkeypatch.setenv("NCSIM_PURE", "")
+    monkeypatch.setattr(looping, "_saved_so_far_us", 0)
+    monkeypatch.delitem(sys.modules, "numba", raising=False)
+
+
+def is_compiled(run):
+    return looping.compiled_run_of(run.state, run.setup, HORIZON_us) is not None
 
 
 @needs_numba
 @pytest.mark.parametrize(
-    ("pure", "refreshes", "kind"),
-    [("", 10**6, KernelSession), ("", 0, RowSession), ("1", 10**6, RowSession)],
+    ("pure", "worth_us", "expected"), [("", 0, True), ("", 10**6, False), ("1", 0, False)]
 )
-def test_kernels_are_for_long_runs_and_can_be_switched_off(pure, refreshes, kind, monkeypatch):
+def test_long_runs_are_compiled_unless_that_is_switched_off(
+    pure, worth_us, expected, monkeypatch, numba_is_unused
+):
     monkeypatch.setenv("NCSIM_PURE", pure)
-    monkeypatch.setattr(choice, "_refreshes_so_far", 0)
-    monkeypatch.delitem(sys.modules, "numba", raising=False)
+    monkeypatch.setattr(looping, "WORTH_COMPILING_us", worth_us)
 
-    assert type(session_for(*model_and_tables(), refreshes)) is kind
+    assert is_compiled(prepare(scenario_of(3, [(0, 1)], {}))) is expected
 
 
 @needs_numba
-def test_many_short_runs_of_a_process_are_a_long_one(monkeypatch):
-    monkeypatch.setenv("NCSIM_PURE", "")
-    monkeypatch.setattr(choice, "_refreshes_so_far", 0)
-    monkeypatch.delitem(sys.modules, "numba", raising=False)
-    worth = [choice.is_worth_kernels(choice.WORTH_KERNELS // 3) for _ in range(4)]
+def test_many_short_runs_of_a_process_are_a_long_one(monkeypatch, numba_is_unused):
+    run = prepare(scenario_of(3, [(0, 1)], {}))
+    cost_us = 2 * len(run.setup.dependencies) * looping.SAVED_WITH_RADIO_us
+    monkeypatch.setattr(looping, "WORTH_COMPILING_us", 4 * cost_us)
 
-    assert worth == [False, False, False, True]
+    assert [looping.is_worth_compiling(run.setup) for _ in range(4)] == [False, False, False, True]
+
+
+@needs_numba
+@pytest.mark.parametrize(
+    ("changed", "observers"),
+    [
+        ({"interference": "csma_spatial"}, ()),
+        (
+            {
+                "interference": {
+                    "type": "csma_bianchi",
+                    "options": {"hidden_model": "fixed_capture"},
+                }
+            },
+            (),
+        ),
+        ({}, [Live()]),
+    ],
+)
+def test_what_the_compiled_loop_does_not_know_runs_in_python(changed, observers, monkeypatch):
+    monkeypatch.setattr(looping, "is_worth_compiling", lambda _: True)
+    run = prepare(scenario_of(3, [(0, 1)], {}), observers=observers, **changed)
+
+    assert not is_compiled(run)
 
 
 def test_a_short_run_does_not_import_numba():
