@@ -104,4 +104,5 @@ def heard_answers(deaf: FloatArray, sending: FloatArray) -> FloatArray:
         deaf: What a station spoils while it sends, shape (links, stations).
         sending: How likely it sends although the data were received.
     """
-    return np.asarray((1.0 - deaf * np.clip(sending, 0.0, 1.0)).prod(axis=1))
+    part = np.minimum(np.maximum(sending, 0.0), 1.0)
+    return np.asarray(np.multiply.reduce(1.0 - deaf * part, axis=1))

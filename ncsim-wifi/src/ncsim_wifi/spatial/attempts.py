@@ -25,17 +25,14 @@ class Exchange(NamedTuple):
         overhead_us: ovh_u, from there until the sender may count again.
         silent_us: b_u, from there until its neighbours may.
         deviation_us: dev[u, w], how much longer w in particular stays silent.
+        busy_us: For how long a frame of each station keeps others from counting.
     """
 
     on_air_us: FloatArray
     overhead_us: FloatArray
     silent_us: FloatArray
     deviation_us: FloatArray
-
-    @property
-    def busy_us(self) -> FloatArray:
-        """Return for how long a frame of each station keeps others from counting."""
-        return self.on_air_us + self.silent_us
+    busy_us: FloatArray
 
 
 class Attempts(NamedTuple):

@@ -17,7 +17,6 @@ from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
     LARGEST_ON,
     LEAST_ON,
-    half_kill,
 )
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
@@ -38,6 +37,7 @@ class Traffic(NamedTuple):
         loss: Share of lost frames of each link.
         attempts: a_l.
         answered: Part of the RTS of each station that are answered.
+        sending: How likely w is sending, not only keeping u silent, while u may count.
     """
 
     on: FloatArray
@@ -50,11 +50,7 @@ class Traffic(NamedTuple):
     loss: FloatArray
     attempts: FloatArray
     answered: FloatArray
-
-    @property
-    def sending(self) -> FloatArray:
-        """Return how likely w is sending, not only keeping u silent, while u may count."""
-        return self.on * (self.times.on_air_us / self.times.busy_us)
+    sending: FloatArray
 
 
 class HiddenLoss(NamedTuple):
@@ -84,12 +80,11 @@ class HiddenLoss(NamedTuple):
 def effective_hazard(statics: Statics, traffic: Traffic, forms: Forms) -> FloatArray:
     """Return h_r of each relation (MODEL 3.7)."""
     hostile, times = statics.hostile, traffic.times
-    alone = statics.alone_hazard
-    half = half_kill(alone)
+    half = statics.alone_half_kill.copy()
     some = hostile.with_helpers
     if len(some):
         half[some] = forms.helped_kill(statics.helped, traffic.on, times.on_air_us, times.busy_us)
-        half = np.where(hostile.is_strong, np.maximum(half, half_kill(alone)), half)
+        half = np.where(hostile.is_strong, np.maximum(half, statics.alone_half_kill), half)
     if hostile.has_partners:
         half = half + _partners_kill(hostile, traffic)
     return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9)
@@ -182,8 +177,7 @@ def _windows(
     left_us, borne_us = windows_of(statics.window_us, protected_us, hazard, immune)
     if scene.settings.rts_cts:
         left_us = np.concatenate([left_us, np.full_like(left_us[:1], CTS_NOTICED_us)])
-    longest_us = max(float(statics.window_us.max()), CTS_NOTICED_us)
-    return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, longest_us)
+    return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, statics.longest_us)
 
 
 def _fates(

@@ -29,12 +29,14 @@ class Others(NamedTuple):
         station: The station it suffers from.
         group: Number of the group, whose members exclude each other on the air.
         harm: Part of overlapped frames that are lost.
+        link_of_group: The link of each group.
     """
 
     link: IntArray
     station: IntArray
     group: IntArray
     harm: FloatArray
+    link_of_group: IntArray
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,8 @@ def _others(scene: Scene, harm: FloatArray) -> Others:
     """Return the harm of stations beyond the nearest, by groups that exclude each other."""
     everybody = np.broadcast_to(np.arange(scene.station_count), harm.shape)
     link, station, group = grouped(harm > 0.0, everybody, scene.senses)
-    return Others(link, station, group, harm[link, station])
+    first = np.flatnonzero(np.diff(group, prepend=-1))
+    return Others(link, station, group, harm[link, station], link[first])
 
 
 def _harm(scene: Scene, power_mW: FloatArray) -> FloatArray:
@@ -125,6 +128,8 @@ def far_noise_hazard(scene: Scene, far_mW: FloatArray, sending: FloatArray) -> F
         sending: How likely w is sending while u may count, shape (stations u, stations w).
     """
     plant = scene.plant
+    if not far_mW.any():
+        return np.zeros(len(scene.links))
     noise_mW = plant.noise_mW + (far_mW * sending[scene.station]).sum(axis=1)
     every = np.arange(len(scene.links))
     whole = hazard(scene.scheme, scene.ratio_dB(noise_mW, every))
@@ -148,9 +153,8 @@ def others_survival(
     free = 1.0 - np.minimum(np.bincount(others.group, on), LARGEST_ON)
     part = scene.protected_us[others.link] / on_air_us[others.station]
     begun = np.bincount(others.group, on * part) / free
-    first = np.flatnonzero(np.diff(others.group, prepend=-1))
     logs = np.log(free) - begun
-    return np.exp(np.bincount(others.link[first], logs, minlength=len(scene.links)))
+    return np.exp(np.bincount(others.link_of_group, logs, minlength=len(scene.links)))
 
 
 def grouped(

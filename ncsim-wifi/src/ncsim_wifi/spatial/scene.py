@@ -24,7 +24,7 @@ class Scene:
     plant: Plant
     links: IntArray
 
-    @property
+    @cached_property
     def settings(self) -> Settings:
         """Return what is the same for all links."""
         return self.plant.settings
@@ -35,20 +35,24 @@ class Scene:
         number = {node: at for at, node in enumerate(dict.fromkeys(nodes))}
         return np.array(list(number)), np.array([number[node] for node in nodes])
 
-    @property
+    @cached_property
     def station_node(self) -> IntArray:
         """Return the node of each station."""
         return self._stations[0]
 
-    @property
+    @cached_property
     def station(self) -> IntArray:
         """Return u(l), the station of each link."""
         return self._stations[1]
 
-    @property
+    @cached_property
     def station_count(self) -> int:
         """Return the number of stations."""
         return len(self.station_node)
+
+    def station_sums(self, values: FloatArray) -> FloatArray:
+        """Return for each station the sum over its links."""
+        return np.asarray(np.bincount(self.station, values, self.station_count), np.float64)
 
     @cached_property
     def scheme(self) -> IntArray:

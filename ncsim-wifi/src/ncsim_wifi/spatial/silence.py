@@ -57,7 +57,7 @@ def silence_of(
         attempts: a_l, the share of each link in the attempts of its station.
         answered: Part of the RTS of each link that are answered, 1 without RTS/CTS.
     """
-    missed = np.clip(1.0 - clear[scene.station], 0.0, 1.0)
+    missed = np.minimum(np.maximum(1.0 - clear[scene.station], 0.0), 1.0)
     per_link_us = silence_us(
         scene.overhead_us[:, None],
         missed,

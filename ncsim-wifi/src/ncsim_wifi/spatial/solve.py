@@ -84,7 +84,7 @@ class FixedPoint:
         self._packets = np.ones(links)
         self._clear = np.ones((stations, stations))
         self._blocked = np.zeros(stations)
-        overhead_us = (scene.link_of_station * self._attempts) @ scene.overhead_us
+        overhead_us = scene.station_sums(self._attempts * scene.overhead_us)
         self._silence = Silence(overhead_us, np.zeros((stations, stations)))
 
     def goodputs_MBps(self) -> FloatArray:
@@ -119,14 +119,15 @@ class FixedPoint:
     def _step(self, *, with_chains: bool) -> FloatArray:
         """Go one step; return R_u."""
         times = self._exchange()
-        tau = attempt_probability(mean_count(self._stages))
+        count = mean_count(self._stages)
+        tau = attempt_probability(count)
         attempts = attempts_of(self._scene, tau, self._clear, self._able(), times)
         occupancy = self._statics.occupancy(
             np.maximum(attempts.activity, LEAST_ACTIVITY), self._forms.exact_occupancy
         )
         gain = self._scene.settings.approximations.gain
-        self._clear = gain * np.clip(occupancy.clear, 0.0, 1.0) + (1.0 - gain) * self._clear
-        traffic = self._traffic(tau, attempts, occupancy, times)
+        self._clear = gain * np.minimum(occupancy.clear, 1.0) + (1.0 - gain) * self._clear
+        traffic = self._traffic(count, attempts, occupancy, times)
         fresh = silence_of(self._scene, self._clear, self._attempts, self._answered)
         self._silence = Silence(
             *(
@@ -144,31 +145,33 @@ class FixedPoint:
 
     def _exchange(self) -> Exchange:
         """Return T_u, ovh_u and the silence after frames, averaged over links (MODEL 3.1)."""
-        own = self._scene.link_of_station * self._attempts
-        on_air_us = self._scene.on_air_us
-        if self._scene.settings.rts_cts:
+        scene, on_air_us = self._scene, self._scene.on_air_us
+        if scene.settings.rts_cts:
             on_air_us = self._answered * on_air_us + (1.0 - self._answered) * RTS_us
-        return Exchange(own @ on_air_us, own @ self._scene.overhead_us, *self._silence)
+        on_air_us = scene.station_sums(self._attempts * on_air_us)
+        overhead_us = scene.station_sums(self._attempts * scene.overhead_us)
+        return Exchange(on_air_us, overhead_us, *self._silence, on_air_us + self._silence.mean_us)
 
     def _traffic(
-        self, tau: FloatArray, attempts: Attempts, occupancy: Occupancy, times: Exchange
+        self, count: FloatArray, attempts: Attempts, occupancy: Occupancy, times: Exchange
     ) -> Traffic:
         """Return R_u, D_u and cyc_u (MODEL 3.3)."""
         rate_per_us = attempts.rate_per_us * occupancy.idle
         base_us = times.on_air_us + times.overhead_us
-        count_us = np.maximum(SLOT_us, (1.0 / rate_per_us - base_us) / mean_count(self._stages))
+        count_us = np.maximum(SLOT_us, (1.0 / rate_per_us - base_us) / count)
         cycle_us = base_us[:, None] + MEAN_COUNTS * count_us[:, None]
         return Traffic(
             occupancy.on,
             attempts.same_slot,
-            tau,
+            attempt_probability(count),
             rate_per_us,
             self._stages,
             cycle_us,
             times,
             self._loss,
             self._attempts,
-            (self._scene.link_of_station * self._attempts) @ self._answered,
+            self._scene.station_sums(self._attempts * self._answered),
+            occupancy.on * (times.on_air_us / times.busy_us),
         )
 
     def _learn(self, traffic: Traffic, attempts: Attempts, *, with_chains: bool) -> None:
@@ -177,8 +180,10 @@ class FixedPoint:
         scene, sending = self._scene, traffic.sending
         noise_hazard = far_noise_hazard(scene, statics.far_mW, sending)
         base = base_success(scene, noise_hazard, attempts.same_slot, statics.same_slot_loss)
-        base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
-        base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
+        if len(statics.others.link):
+            base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
+        if statics.unread is not None or statics.fields is not None:
+            base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
             hidden = hidden_loss(self._scene, statics, traffic, gates, self._forms)
@@ -241,12 +246,12 @@ class FixedPoint:
     def _visit(self, success: FloatArray) -> None:
         """Update stages, attempt shares and losses (MODEL 3.11)."""
         gain = self._scene.settings.approximations.stage_gain
-        visits = visits_per_packet(np.clip(success, 0.0, 1.0))
+        visits = visits_per_packet(np.minimum(np.maximum(success, 0.0), 1.0))
         fresh = visits / visits.sum(axis=1, keepdims=True)
         self._link_stages = gain * fresh + (1.0 - gain) * self._link_stages
         per_packet = self._packets / self._link_stages[:, 0]
-        own = self._scene.link_of_station * per_packet
-        self._attempts = per_packet / own.sum(axis=1)[self._scene.station]
+        own = self._scene.station_sums(per_packet)
+        self._attempts = per_packet / own[self._scene.station]
         self._stages = (self._scene.link_of_station * self._attempts) @ self._link_stages
         self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
 
@@ -293,14 +298,15 @@ class FixedPoint:
         scene, acks, hostile = self._scene, self._statics.acks, self._statics.hostile
         spared = np.ones((len(scene.links), scene.station_count))
         if hidden is not None:
-            kill = np.where(
-                hostile.by_cts_only, -np.expm1(-self._statics.alone_hazard), hidden.kill
-            )
+            kill = hidden.kill
+            if scene.settings.rts_cts:
+                alone_kill = -np.expm1(-self._statics.alone_hazard)
+                kill = np.where(hostile.by_cts_only, alone_kill, kill)
             spared[hostile.link, hostile.station] = 1.0 - kill
-        own = scene.link_of_station * (self._attempts * self._answered)
-        sending = (
-            traffic.sending * (1.0 - own @ self._statics.silenced).T
-        )  # a CTS stops the sender too
+        sending = traffic.sending
+        if scene.settings.rts_cts:  # a CTS stops the sender too
+            own = scene.link_of_station * (self._attempts * self._answered)
+            sending = sending * (1.0 - own @ self._statics.silenced).T
         heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
         self._heard = heard
         if not len(acks.link):

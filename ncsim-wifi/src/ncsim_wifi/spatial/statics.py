@@ -53,7 +53,9 @@ class Statics:
         rivals: Which relations of a link are conditioned on which others.
         earlier_rivals: The same, on relations of earlier groups only.
         window_us: V_r, the window in which an interferer must not begin.
+        longest_us: The longest window that is asked about.
         alone_hazard: h(w) of each relation.
+        alone_half_kill: The part of half overlapped frames that it destroys.
         helped: The relations that may act together with others.
         by_cts: Whether a relation is one of stations kept apart by CTS only.
         by_cts_survives: What handshakes of these survive, by stage of the other.
@@ -82,7 +84,9 @@ class Statics:
     rivals: tuple[IntArray, IntArray]
     earlier_rivals: tuple[IntArray, IntArray]
     window_us: FloatArray
+    longest_us: float
     alone_hazard: FloatArray
+    alone_half_kill: FloatArray
     helped: Helped
     by_cts: BoolArray
     by_cts_survives: FloatArray
@@ -114,6 +118,7 @@ def statics_of(scene: Scene) -> Statics:
     alone = hostile.delta[:, 0]
     fatal = fatal_slots(fate_of(scene, hostile, alone, RTS_RATIO_dB), scene.data_us[hostile.link])
     rivals, earlier_rivals = _rivals(scene, hostile)
+    window_us = _windows_us(scene, hostile)
     return Statics(
         scene.senses.astype(np.float64),
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
@@ -121,8 +126,10 @@ def statics_of(scene: Scene) -> Statics:
         own,
         rivals,
         earlier_rivals,
-        _windows_us(scene, hostile),
+        window_us,
+        max(window_us.max(initial=0.0), CTS_NOTICED_us),
         alone,
+        half_kill(alone),
         _helped(scene, hostile),
         scene.silenced_by_cts[own, hostile.station],
         unmet(fatal),
