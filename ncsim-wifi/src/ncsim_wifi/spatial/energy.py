@@ -11,7 +11,7 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.sums import row_sums
+from ncsim_wifi.spatial.sums import halving_sums
 
 TINY = 1e-12
 
@@ -164,7 +164,7 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     for member in range(on.shape[1]):
         weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
     weight = weight * tables.feasible
-    blocked = row_sums(weight * tables.blocks) / row_sums(weight)
+    blocked = halving_sums(weight * tables.blocks) / halving_sums(weight)
     gates = (gate(weight, masks, tables.relation_count) for masks in (tables.before, tables.during))
     return Silenced(blocked, *gates)
 
@@ -176,7 +176,7 @@ def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """
     result = np.ones(count)
     weight = weights[masks.row]
-    sums = row_sums(masks.subsets * weight)
+    sums = halving_sums(masks.subsets * weight)
     with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
     result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

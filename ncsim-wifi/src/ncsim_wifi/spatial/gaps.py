@@ -136,7 +136,6 @@ class Gaps:
         overhead_us: ovh, from the end of data until its sender may count.
         count_us: D_G, mean duration of a count.
         interrupted: kappa, probability that a count is interrupted.
-        longest_us: The longest window asked about.
     """
 
     law: CounterLaw
@@ -146,16 +145,10 @@ class Gaps:
     overhead_us: FloatArray
     count_us: FloatArray
     interrupted: FloatArray
-    longest_us: float
 
     @classmethod
-    def of(cls, met: Interferers, longest_us: float) -> "Gaps":
-        """Return the gaps that interferers leave.
-
-        Args:
-            met: The interferers.
-            longest_us: The longest window asked about.
-        """
+    def of(cls, met: Interferers) -> "Gaps":
+        """Return the gaps that interferers leave."""
         law = counter_law(met.share, met.others)
         mean_count = mean_remaining_count(law)
         counts = row_sums(met.stages * mean_count)
@@ -170,7 +163,6 @@ class Gaps:
             met.overhead_us,
             count_us,
             np.minimum(np.maximum(interrupted, 0.0), 1.0),
-            longest_us,
         )
 
     @cached_property
@@ -183,15 +175,21 @@ class Gaps:
         """Return the mean time from one frame to the next."""
         return self.mean_us + (self.on_air_us + self.overhead_us - self.after_us)[:, None]
 
-    @cached_property
-    def _moments(self) -> FloatArray:
-        """Return the sums over n <= N of n^i ((1 - kappa) y)^n, shape (4, relations * (N + 1))."""
-        n = np.arange(int(self.longest_us / SLOT_us) + 2, dtype=np.float64)
+    def _moments(self, last: int) -> FloatArray:
+        """Return the sums over n <= N of n^i ((1 - kappa) y)^n, shape (4, relations * (N + 1)).
+
+        Args:
+            last: The last N.
+        """
+        n = np.arange(last + 1, dtype=np.float64)
         terms = np.empty((len(self.after_us), len(n)))
         terms[:, 0] = 1.0
         terms[:, 1:] = ((1.0 - self.interrupted) * self.law.others[:, 0])[:, None]
         np.multiply.accumulate(terms, axis=1, out=terms)
-        moments = terms[None] * np.array([np.ones_like(n), n, n**2, n**3])[:, None, :]
+        moments = np.empty((4, *terms.shape))
+        moments[0] = terms
+        for order in range(1, 4):
+            np.multiply(terms, n**order, out=moments[order])
         return np.add.accumulate(moments, axis=2, out=moments).reshape(4, -1)
 
     @cached_property
@@ -214,10 +212,11 @@ class Gaps:
         """
         room_us = window_us - self.after_us[:, None]
         last = np.minimum(np.floor(room_us / SLOT_us), LONGEST_COUNTS)
-        count = self._moments.shape[1] // len(self.after_us)
-        rows = np.arange(0, self._moments.shape[1], count)[:, None]
-        at = rows + np.maximum(last, 0.0).astype(np.int64)
-        of_0, of_1, of_2, of_3 = self._moments[:, at]
+        places = np.maximum(last, 0.0).astype(np.int64)
+        moments = self._moments(int(places.max(initial=0)))
+        count = moments.shape[1] // max(1, len(self.after_us))
+        rows = np.arange(0, moments.shape[1], count)[:, None]
+        of_0, of_1, of_2, of_3 = moments[:, rows + places]
         one, by_n, by_square = self._ending
         ends = one * of_0 + by_n * of_1 + by_square * of_2
         counted = one * of_1 + by_n * of_2 + by_square * of_3
@@ -292,7 +291,7 @@ def survival(met: Interferers, windows: Windows) -> Survival:
 
     Source: MODEL 3.8, nohit_k and s_k.
     """
-    gaps = Gaps.of(met, windows.longest_us)
+    gaps = Gaps.of(met)
     left_us = windows.left_us[:, :, None]
     ends, spare_us = gaps.short(left_us)
     room_us = np.maximum(0.0, gaps.mean_us - left_us + spare_us)

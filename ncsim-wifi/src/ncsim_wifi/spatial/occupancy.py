@@ -5,7 +5,7 @@ Source: MODEL 3.3; ideal CSMA of Boorstyn (1987), Liew et al. (2010), Laufer and
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -240,6 +240,13 @@ def occupancy_of(senses: BoolArray, max_sets: int) -> OccupancyModel:
         senses: Who senses whom, symmetric.
         max_sets: Independent sets of a component up to which it is exact, at most 1500.
     """
+    return _model_of(len(senses), senses.tobytes(), max_sets)
+
+
+@lru_cache(maxsize=256)
+def _model_of(count: int, senses_bytes: bytes, max_sets: int) -> OccupancyModel:
+    """Return the model of a sensing graph; many active sets have the same."""
+    senses = np.frombuffer(senses_bytes, np.bool_).reshape(count, count)
     parts = connected_components(senses)
     return OccupancyModel(
         senses,

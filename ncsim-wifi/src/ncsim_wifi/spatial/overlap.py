@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.spatial.sums import row_sums
+from ncsim_wifi.spatial.sums import halving_sums
 
 LARGEST_KILL = 1.0 - 1e-9
 LARGEST_ON = 0.97
@@ -70,8 +70,8 @@ def joint_kill(kill: FloatArray, omega: FloatArray, present: FloatArray) -> Floa
         there = present[:, helper, None]
         chance = np.concatenate([chance * (1.0 - there), chance * there], axis=1)
     weight = omega * chance
-    total = np.maximum(row_sums(weight), 1e-300)
-    return np.asarray(np.minimum(row_sums(weight * kill) / total, LARGEST_KILL))
+    total = np.maximum(halving_sums(weight), 1e-300)
+    return np.asarray(np.minimum(halving_sums(weight * kill) / total, LARGEST_KILL))
 
 
 class Helped(NamedTuple):

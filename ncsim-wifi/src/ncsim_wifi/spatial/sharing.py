@@ -32,6 +32,31 @@ def water_fill(demands: Sequence[float], capacity: float, costs: Sequence[float]
     return shares
 
 
+def share_of_the_greedy(
+    greedy: int, order: Sequence[int], demands: Sequence[float], costs: Sequence[float]
+) -> float:
+    """Return the share of one that takes all it can get of a capacity of 1, as in ``water_fill``.
+
+    Args:
+        greedy: Which one.
+        order: All, by demand.
+        demands: The most that each of the others takes.
+        costs: What one unit costs each.
+
+    >>> share_of_the_greedy(1, [0, 2, 1], [0.2, 0.0, 0.9], [1.0, 1.0, 1.0])
+    0.4
+    """
+    capacity, cost = 1.0, sum(costs)
+    for place in order:
+        demand = demands[place]
+        if place == greedy or (demand == math.inf and place > greedy):
+            continue
+        level = max(0.0, capacity) / cost if cost > 0.0 else 0.0
+        capacity -= min(demand, level) * costs[place]
+        cost -= costs[place]
+    return max(0.0, capacity) / cost if cost > 0.0 else 0.0
+
+
 class Sharing:
     """Who passes which links and stations.
 
@@ -50,10 +75,9 @@ class Sharing:
         for link in self._on_link:
             at_station.setdefault(station[link], []).append(link)
         self._shared = [
-            (link, links)
+            links
             for links in at_station.values()
-            for link in links
-            if len(links) > 1 or len(self._on_link[link]) > 1
+            if len(links) > 1 or len(self._on_link[links[0]]) > 1
         ]
 
     def divide(self, able: Mapping[int, float]) -> list[tuple[float, int]]:
@@ -63,55 +87,74 @@ class Sharing:
             able: What each link would deliver if its station served no other.
         """
         offers = [{link: able[link] for link in route} for route in self._routes]
-        for link, _ in self._shared:
-            for number in self._on_link[link]:
-                offers[number][link] = math.inf
+        for links in self._shared:
+            for link in links:
+                for number in self._on_link[link]:
+                    offers[number][link] = math.inf
         for _ in range(ROUNDS if self._shared else 0):
-            before = [dict(each) for each in offers]
-            demands = {
-                link: {n: _least_elsewhere(before[n], link) for n in self._on_link[link]}
-                for link, _ in self._shared
-            }
-            for link, links in self._shared:
-                share = self._share_of(link, links, able, demands)
-                self._offer(link, share, demands[link], offers)
-            if offers == before:
+            least = [_two_least(each) for each in offers]
+            has_moved = False
+            for links in self._shared:
+                has_moved |= self._serve(links, able, least, offers)
+            if not has_moved:
                 break
         return [min((value, link) for link, value in each.items()) for each in offers]
 
-    def _share_of(
+    def _serve(
         self,
-        link: int,
         links: Sequence[int],
         able: Mapping[int, float],
-        demands: Mapping[int, Mapping[int, float]],
-    ) -> float:
-        """Return what a station could give one of its links, the others having their demands."""
-        if len(links) == 1 or not able[link]:
-            return able[link]
-        usable = [each for each in links if able[each]]
-        asked = [math.inf if each == link else sum(demands[each].values()) for each in usable]
-        shares = water_fill(asked, 1.0, [1.0 / able[each] for each in usable])
-        return shares[usable.index(link)]
+        least: Sequence[tuple[float, int, float]],
+        offers: Sequence[dict[int, float]],
+    ) -> bool:
+        """Write down what one station offers the transfers on its links; return if that is new."""
+        demands = {
+            link: [
+                second if link == tightest else first
+                for first, tightest, second in (least[number] for number in self._on_link[link])
+            ]
+            for link in links
+        }
+        usable = [link for link in links if able[link]]
+        asked = [sum(demands[link]) for link in usable]
+        costs = [1.0 / able[link] for link in usable]
+        order = sorted(range(len(usable)), key=asked.__getitem__)
+        share = dict.fromkeys(links, 0.0)
+        for place, link in enumerate(usable):
+            several = len(links) > 1
+            share[link] = share_of_the_greedy(place, order, asked, costs) if several else able[link]
+        moved = [self._offer(link, share[link], demands[link], offers) for link in links]
+        return any(moved)
 
     def _offer(
         self,
         link: int,
         share: float,
-        demands: Mapping[int, float],
+        demands: Sequence[float],
         offers: Sequence[dict[int, float]],
-    ) -> None:
-        """Write down what each transfer on a link could take of its share."""
+    ) -> bool:
+        """Write down what each transfer on a link could take of its share; return if it is new."""
         numbers = self._on_link[link]
-        if len(numbers) == 1:
-            offers[numbers[0]][link] = share
-            return
-        for number in numbers:
-            asked = [math.inf if each == number else demands[each] for each in numbers]
-            parts = water_fill(asked, share, [1.0] * len(numbers))
-            offers[number][link] = parts[numbers.index(number)]
+        new = [share]
+        if len(numbers) > 1:
+            ones = [1.0] * len(numbers)
+            new = [
+                water_fill([*demands[:place], math.inf, *demands[place + 1 :]], share, ones)[place]
+                for place in range(len(numbers))
+            ]
+        has_moved = False
+        for number, value in zip(numbers, new, strict=True):
+            has_moved |= offers[number][link] != value
+            offers[number][link] = value
+        return has_moved
 
 
-def _least_elsewhere(offers: Mapping[int, float], link: int) -> float:
-    """Return the least that other links of a route offer."""
-    return min((value for at, value in offers.items() if at != link), default=math.inf)
+def _two_least(offers: Mapping[int, float]) -> tuple[float, int, float]:
+    """Return the least offer and its link, and the least of all other links."""
+    first, tightest, second = math.inf, -1, math.inf
+    for link, value in offers.items():
+        if value < first:
+            first, tightest, second = value, link, first
+        elif value < second:
+            second = value
+    return first, tightest, second

@@ -13,6 +13,14 @@ def row_sums(values: FloatArray) -> FloatArray:
     return np.asarray(np.add.accumulate(values, axis=-1)[..., -1])
 
 
+def halving_sums(values: FloatArray) -> FloatArray:
+    """Return the sums along the last axis, of a power of two of terms: first plus second half."""
+    while values.shape[-1] > 1:
+        half = values.shape[-1] // 2
+        values = values[..., :half] + values[..., half:]
+    return values[..., 0]
+
+
 def row_products(values: FloatArray) -> FloatArray:
     """Return the products along the last axis, each from its first factor to its last."""
     return np.asarray(np.multiply.accumulate(values, axis=-1)[..., -1])

@@ -6,7 +6,7 @@ Source: MODEL 3.6; see ``ncsim_wifi.spatial.energy``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import compiled, halving_sum
 from ncsim_wifi.spatial.energy import TINY, GateMasks, Silenced, Silencing
 
 
@@ -33,26 +33,25 @@ def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArra
         half = 1 << member
         for held in range(half):
             weight[row, half + held] = weight[row, held] * odds
-    blocking = total = 0.0
+    blocking, every = np.empty(weight.shape[1]), np.empty(weight.shape[1])
     for held in range(weight.shape[1]):
         weight[row, held] = weight[row, held] * tables.feasible[row, held]
-        blocking = blocking + weight[row, held] * tables.blocks[row, held]
-        total = total + weight[row, held]
-    return blocking / total
+        blocking[held] = weight[row, held] * tables.blocks[row, held]
+        every[held] = weight[row, held]
+    return halving_sum(blocking) / halving_sum(every)
 
 
 @compiled
 def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation."""
     result = np.ones(count)
+    sums, terms = np.empty(4), np.empty(weight.shape[1])
     for at in range(len(masks.relation)):
         row = masks.row[at]
-        free_with = all_with = free_without = all_without = 0.0
-        for held in range(weight.shape[1]):
-            free_with = free_with + masks.subsets[0, at, held] * weight[row, held]
-            all_with = all_with + masks.subsets[1, at, held] * weight[row, held]
-            free_without = free_without + masks.subsets[2, at, held] * weight[row, held]
-            all_without = all_without + masks.subsets[3, at, held] * weight[row, held]
-        with_it, without = free_with / (all_with + TINY), free_without / (all_without + TINY)
+        for kind in range(4):
+            for held in range(len(terms)):
+                terms[held] = masks.subsets[kind, at, held] * weight[row, held]
+            sums[kind] = halving_sum(terms)
+        with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
         result[masks.relation[at]] = min(1.0, with_it / max(without, TINY))
     return result

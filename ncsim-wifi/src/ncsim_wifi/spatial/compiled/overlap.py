@@ -6,7 +6,7 @@ Source: MODEL 3.7; see ``ncsim_wifi.spatial.overlap``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import compiled, halving_sum
 from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
 
 
@@ -17,7 +17,7 @@ def helped_kill(
     """Return kd of each of these relations."""
     count, helpers = helped.helper.shape
     result = np.empty(count)
-    chance = np.empty(1 << helpers)
+    chance, killed = np.empty(1 << helpers), np.empty(1 << helpers)
     for at in range(count):
         window_us = _overlap_us(helped, at, on, (on_air_us, busy_us))
         chance[0] = 1.0
@@ -27,12 +27,11 @@ def helped_kill(
             for held in range(half):
                 chance[half + held] = chance[held] * met
                 chance[held] = chance[held] * (1.0 - met)
-        total = killed = 0.0
         for held in range(1 << helpers):
-            weight = helped.omega[at, held] * chance[held]
-            total = total + weight
-            killed = killed + weight * helped.kill[at, held]
-        result[at] = min(killed / max(total, 1e-300), LARGEST_KILL)
+            chance[held] = helped.omega[at, held] * chance[held]
+            killed[held] = chance[held] * helped.kill[at, held]
+        total = max(halving_sum(chance), 1e-300)
+        result[at] = min(halving_sum(killed) / total, LARGEST_KILL)
     return result
 
 
