@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
-from ncsim_wifi.spatial.relations import Hostile
+from ncsim_wifi.spatial.relations import Hostile, subsets_of
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.sums import halving_sums
 
@@ -51,7 +51,7 @@ def energy_sets(scene: Scene) -> EnergySets:
         station = station[:0]
     member, member_mW = member[station], member_mW[station]
     size = member.shape[1]
-    subsets = np.array([[bool(held >> i & 1) for i in range(size)] for held in range(1 << size)])
+    subsets = subsets_of(size)
     together = scene.senses[member[:, :, None], member[:, None, :]]
     clashes = np.einsum("rij,si,sj->rs", together.astype(np.float64), subsets, subsets) > 0
     lacks = (member_mW == 0.0).astype(np.float64) @ subsets.T > 0

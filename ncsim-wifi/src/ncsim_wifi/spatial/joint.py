@@ -27,22 +27,15 @@ class JointStages:
         self._scene = scene
         self._hostile = hostile
         own = scene.station[hostile.link]
-        directed = list(dict.fromkeys(zip(own.tolist(), hostile.station.tolist(), strict=True)))
-        known = set(directed)
-        mutual = [(u, w) for u, w in directed if u < w and (w, u) in known]
-        if not scene.settings.terms.joint_chains:
-            mutual = []
-        self.count = len(mutual)
-        sides = [*mutual, *[(w, u) for u, w in mutual]]
-        side_of = {pair: at for at, pair in enumerate(sides)}
-        self.side: IntArray = np.array(
-            [
-                side_of.get(pair, -1)
-                for pair in zip(own.tolist(), hostile.station.tolist(), strict=True)
-            ],
-            np.int64,
-        )
-        self._station = np.array([u for u, _ in sides], np.int64)
+        hurts = np.zeros((scene.station_count, scene.station_count), np.bool_)
+        hurts[own, hostile.station] = scene.settings.terms.joint_chains
+        one, two = np.nonzero(np.triu(hurts & hurts.T))
+        self.count = len(one)
+        side_of = np.full(hurts.shape, -1)
+        side_of[one, two] = np.arange(self.count)
+        side_of[two, one] = np.arange(self.count) + self.count
+        self.side: IntArray = side_of[own, hostile.station]
+        self._station = np.concatenate([one, two])
         self._relations = np.flatnonzero(self.side >= 0)
         self._joint: FloatArray | None = None
         self._given: FloatArray | None = None

@@ -161,22 +161,21 @@ def grouped(
     kept: BoolArray, station: IntArray, senses: BoolArray
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Return link, place and group of the kept relations: each group excludes itself on air."""
-    links, places, groups = [], [], []
-    first_group = 0
-    for link in np.flatnonzero(kept.any(axis=1)).tolist():
-        cliques: list[list[int]] = []
-        for place in np.flatnonzero(kept[link]).tolist():
-            heard = senses[station[link, place]]
-            for clique in cliques:
-                if heard[station[link, clique]].all():
-                    clique.append(place)
-                    break
-            else:
-                cliques.append([place])
-        for number, clique in enumerate(cliques, first_group):
-            links += [link] * len(clique)
-            places += clique
-            groups += [number] * len(clique)
-        first_group += len(cliques)
-    as_int = [np.array(values, np.int64) for values in (links, places, groups)]
-    return as_int[0], as_int[1], as_int[2]
+    rows, columns = np.nonzero(kept)
+    stations = station[rows, columns].tolist()
+    heard = {each: frozenset(np.flatnonzero(senses[each]).tolist()) for each in set(stations)}
+    cliques: dict[int, list[tuple[set[int], list[int]]]] = {}  # by link: stations, places above
+    for at, (link, each) in enumerate(zip(rows.tolist(), stations, strict=True)):
+        of_link = cliques.setdefault(link, [])
+        near = heard[each]
+        for members, places in of_link:
+            if near.issuperset(members):
+                members.add(each)
+                places.append(at)
+                break
+        else:
+            of_link.append(({each}, [at]))
+    in_order = [places for of_link in cliques.values() for _, places in of_link]
+    order = np.array([at for clique in in_order for at in clique], np.int64)
+    group = np.repeat(np.arange(len(in_order)), [len(clique) for clique in in_order])
+    return rows[order], columns[order], group

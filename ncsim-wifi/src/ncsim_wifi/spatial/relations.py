@@ -4,7 +4,7 @@ Source: MODEL 2.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -110,7 +110,7 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     locks = near.power_mW >= 10.0 ** (settings.preamble_dBm / 10.0)
     is_strong, by_cts_only = _strong(scene, near, locks)
     helper = _helpers(scene, near, is_strong)
-    sets = _subsets(settings.approximations.helper_count)
+    sets = subsets_of(settings.approximations.helper_count)
     delta, omega = _increments(scene, near, helper, sets)
     worst = np.where(omega > 0.0, delta, 0.0).max(axis=2)
     partner, partner_kill = _partners(scene, near)
@@ -158,7 +158,8 @@ def _cts_reaches(scene: Scene) -> BoolArray:
     return np.asarray(scene.link_of_station.astype(np.float64) @ heard > 0.0)
 
 
-def _subsets(size: int) -> BoolArray:
+@cache
+def subsets_of(size: int) -> BoolArray:
     """Return all subsets of a few things, the empty one first."""
     return np.array([[bool(held >> i & 1) for i in range(size)] for held in range(1 << size)])
 

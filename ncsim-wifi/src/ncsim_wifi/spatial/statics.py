@@ -173,10 +173,15 @@ def _rivals(
     Returns:
         All of them, and those of which the second belongs to an earlier group.
     """
-    counts = hostile.link[:, None] == hostile.link[None, :]
-    counts &= hostile.group[:, None] != hostile.group[None, :]
-    counts &= scene.senses[hostile.station[:, None], hostile.station[None, :]]
-    one, two = np.nonzero(counts)
+    starts = hostile.link_starts
+    last = np.append(starts[1:], len(hostile))[np.searchsorted(hostile.links, hostile.link)]
+    first = starts[np.searchsorted(hostile.links, hostile.link)]
+    one = np.repeat(np.arange(len(hostile)), last - first)
+    ends = np.cumsum(last - first)
+    two = np.arange(len(one)) - np.repeat(ends - last, last - first)
+    counts = scene.senses[hostile.station[one], hostile.station[two]]
+    counts &= hostile.group[one] != hostile.group[two]
+    one, two = one[counts], two[counts]
     earlier = hostile.group[two] < hostile.group[one]
     return (one, two), (one[earlier], two[earlier])
 
