@@ -70,7 +70,10 @@ def ack_survival(expected: FloatArray, kill: FloatArray) -> FloatArray:
     """
     whole = np.floor(expected)
     kill = np.minimum(kill, 1.0)
-    return np.asarray((1.0 - kill) ** whole * (1.0 - (expected - whole) * kill))
+    spared = 1.0 - (expected - whole) * kill
+    for number in range(int(whole.max(initial=0.0))):
+        spared = np.where(whole > number, spared * (1.0 - kill), spared)
+    return spared
 
 
 def deaf_to_ack(scene: Scene) -> FloatArray:

@@ -9,10 +9,11 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import AIFS_us, RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_products, row_sums
 
 ACK_TIMEOUT_us = 45.0
 LEAST_OWN_WAIT = 0.35
+IN_VAIN_us = RTS_us + ACK_TIMEOUT_us + AIFS_us
 GAUSS_AT = 0.5 + 0.5 * np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
 GAUSS_WEIGHT = np.array([5.0, 8.0, 5.0]) / 18.0
 
@@ -54,8 +55,10 @@ def first_in_line(same_slot: FloatArray) -> FloatArray:
 
     Source: MODEL 3.2, share: the integral of prod (1 - p (1 - y)) by three Gauss points.
     """
-    survivors = 1.0 - same_slot[:, :, None] * (1.0 - GAUSS_AT)
-    return np.asarray(survivors.prod(axis=1) @ GAUSS_WEIGHT)
+    shares = np.zeros(len(same_slot))
+    for at, weight in zip(GAUSS_AT.tolist(), GAUSS_WEIGHT.tolist(), strict=True):
+        shares = shares + row_products(1.0 - same_slot * (1.0 - at)) * weight
+    return shares
 
 
 def clear_slot_rate_per_us(
@@ -74,28 +77,40 @@ def clear_slot_rate_per_us(
     return tau / np.maximum(idle_us + extra_us, idle_us / 2.0)
 
 
-def attempts_of(
-    scene: Scene, tau: FloatArray, clear: FloatArray, able: FloatArray, times: Exchange
-) -> Attempts:
-    """Return the attempts of all stations.
+class Contenders(NamedTuple):
+    """Who may send, before an attempt.
 
     Args:
-        scene: The active links.
+        senses: 1 where stations sense each other.
         tau: Probability of an attempt per decision of each station.
         clear: C of the occupancy.
         able: (1 - B) alpha, how often each station has a frame and is not kept silent otherwise.
+        asks_first: Whether RTS and CTS precede data.
+    """
+
+    senses: FloatArray
+    tau: FloatArray
+    clear: FloatArray
+    able: FloatArray
+    asks_first: bool
+
+
+def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
+    """Return the attempts of all stations.
+
+    Args:
+        contenders: Who may send.
         times: How long exchanges take.
     """
-    same_slot = scene.senses * (tau * able)[None, :] * clear
-    np.clip(same_slot, 0.0, 1.0, out=same_slot)
-    nobody = (1.0 - same_slot).prod(axis=1)
-    extra_us = (same_slot * times.deviation_us.T).sum(axis=1) * (1.0 - tau)
+    senses, tau, clear, able, asks_first = contenders
+    same_slot = np.minimum(np.maximum(senses * (tau * able) * clear, 0.0), 1.0)
+    nobody = row_products(1.0 - same_slot)
+    extra_us = row_sums(same_slot * times.deviation_us.T) * (1.0 - tau)
     rate_0 = clear_slot_rate_per_us(tau, nobody * (1.0 - tau), extra_us) * able
     own_wait_us = 1.0 / rate_0 + times.overhead_us - times.silent_us
     rate = 1.0 / np.maximum(own_wait_us, LEAST_OWN_WAIT / rate_0)
     share = first_in_line(same_slot)
-    if not scene.settings.rts_cts:
+    if not asks_first:
         return Attempts(same_slot, rate, rate * times.busy_us * share)
     first = np.maximum(share - nobody, (1.0 - nobody) / 2.0)
-    in_vain_us = RTS_us + ACK_TIMEOUT_us + AIFS_us
-    return Attempts(same_slot, rate, rate * (nobody * times.busy_us + first * in_vain_us))
+    return Attempts(same_slot, rate, rate * (nobody * times.busy_us + first * IN_VAIN_us))

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from typing import Final, NamedTuple
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial import chains, energy, gaps, occupancy, overlap
+from ncsim_wifi.spatial import attempts, chains, energy, gaps, occupancy, overlap
 
 WORTH_LOOPS: Final = 4000
 """Steps that save, at about 1 ms each, what it takes to start numba and to read its cache."""
@@ -24,6 +24,7 @@ _steps_so_far = 0
 class Forms(NamedTuple):
     """The functions that there are in two forms; see the modules that define them."""
 
+    attempts_of: Callable[[attempts.Contenders, attempts.Exchange], attempts.Attempts]
     survival: Callable[[gaps.Interferers, gaps.Windows], gaps.Survival]
     joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
     silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
@@ -32,6 +33,7 @@ class Forms(NamedTuple):
 
 
 ARRAYS: Final = Forms(
+    attempts.attempts_of,
     gaps.survival,
     chains.joint_stages,
     energy.silenced_by,
@@ -43,13 +45,14 @@ ARRAYS: Final = Forms(
 @cache
 def compiled_loops() -> Forms:
     """Return the compiled form; plain loops, which are slow, without numba."""
+    from ncsim_wifi.spatial.compiled.attempts import attempts_of
     from ncsim_wifi.spatial.compiled.chains import joint_stages
     from ncsim_wifi.spatial.compiled.energy import silenced_by
     from ncsim_wifi.spatial.compiled.gaps import survival
     from ncsim_wifi.spatial.compiled.occupancy import exact_occupancy
     from ncsim_wifi.spatial.compiled.overlap import helped_kill
 
-    return Forms(survival, joint_stages, silenced_by, exact_occupancy, helped_kill)
+    return Forms(attempts_of, survival, joint_stages, silenced_by, exact_occupancy, helped_kill)
 
 
 def forms_for(steps: int) -> Forms:

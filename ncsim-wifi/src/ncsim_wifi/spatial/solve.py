@@ -13,7 +13,7 @@ from ncsim_wifi.mac.timing import RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.acks import ack_survival, heard_answers
 from ncsim_wifi.spatial.artefacts import Senders, field_survival
-from ncsim_wifi.spatial.attempts import Attempts, Exchange, attempts_of
+from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
 from ncsim_wifi.spatial.backoff import (
     MEAN_COUNTS,
     STAGES,
@@ -121,7 +121,16 @@ class FixedPoint:
         times = self._exchange()
         count = mean_count(self._stages)
         tau = attempt_probability(count)
-        attempts = attempts_of(self._scene, tau, self._clear, self._able(), times)
+        attempts = self._forms.attempts_of(
+            Contenders(
+                self._statics.senses,
+                tau,
+                self._clear,
+                self._able(),
+                self._scene.settings.rts_cts,
+            ),
+            times,
+        )
         occupancy = self._statics.occupancy(
             np.maximum(attempts.activity, LEAST_ACTIVITY), self._forms.exact_occupancy
         )

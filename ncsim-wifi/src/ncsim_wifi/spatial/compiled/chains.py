@@ -75,43 +75,53 @@ def _fill_spread(rates: FloatArray, spread: FloatArray) -> None:
 
 @compiled
 def _fill_flow(rates: FloatArray, spread: FloatArray, flow: FloatArray) -> None:
-    """Fill the rates between boundary states, from one to another."""
+    """Fill the rates between boundary states, to one from another."""
+    flow[:] = 0.0
+    side = np.empty(BOUNDARY)
+    for stage in range(STAGES):
+        top, below = flow[stage], stage - 1
+        side[:] = 0.0
+        for k in range(STAGES):
+            _add(top, rates[k, stage, SUCCESS_A], spread[k, stage])
+            _add(side, rates[stage, k, SUCCESS_B], spread[stage, k])
+        _add(top, rates[LAST, stage, LOSS_A], spread[LAST, stage])
+        _add(side, rates[stage, LAST, LOSS_B], spread[stage, LAST])
+        if stage:
+            _add(top, rates[0, below, LOSS_B], spread[0, below])
+            _add(top, rates[LAST, below, COMMON], spread[LAST, below])
+            _add(side, rates[below, 0, LOSS_A], spread[below, 0])
+            _add(side, rates[below, LAST, COMMON], spread[below, LAST])
+            flow[STAGES - 1 + stage] = side
+        else:
+            _add(top, 1.0, side)
+            _add(top, rates[LAST, LAST, COMMON], spread[LAST, LAST])
+
+
+@compiled
+def _add(inflow: FloatArray, rate: float, spread: FloatArray) -> None:
+    """Add what flows out of one state."""
     for origin in range(BOUNDARY):
-        for stage in range(STAGES):
-            top = side = 0.0
-            for k in range(STAGES):
-                top = top + rates[k, stage, SUCCESS_A] * spread[k, stage, origin]
-                side = side + rates[stage, k, SUCCESS_B] * spread[stage, k, origin]
-            top = top + rates[LAST, stage, LOSS_A] * spread[LAST, stage, origin]
-            side = side + rates[stage, LAST, LOSS_B] * spread[stage, LAST, origin]
-            if stage:
-                below = stage - 1
-                top = top + rates[0, below, LOSS_B] * spread[0, below, origin]
-                top = top + rates[LAST, below, COMMON] * spread[LAST, below, origin]
-                side = side + rates[below, 0, LOSS_A] * spread[below, 0, origin]
-                side = side + rates[below, LAST, COMMON] * spread[below, LAST, origin]
-                flow[origin, stage], flow[origin, STAGES - 1 + stage] = top, side
-            else:
-                both = rates[LAST, LAST, COMMON] * spread[LAST, LAST, origin]
-                flow[origin, 0] = top + side + both
+        inflow[origin] += rate * spread[origin]
 
 
 @compiled
 def _eliminate(flow: FloatArray, result: FloatArray) -> None:
-    """Fill the stationary distribution, up to a factor."""
+    """Fill the stationary distribution, up to a factor; flows are to one state from another."""
     for last in range(BOUNDARY - 1, 0, -1):
-        leaves = flow[last, 0]
+        leaves = flow[0, last]
         for state in range(1, last):
-            leaves = leaves + flow[last, state]
+            leaves = leaves + flow[state, last]
         for origin in range(last):
-            flow[origin, last] /= leaves
-            for state in range(last):
-                flow[origin, state] += flow[origin, last] * flow[last, state]
+            flow[last, origin] /= leaves
+        for state in range(last):
+            rate = flow[state, last]
+            for origin in range(last):
+                flow[state, origin] += flow[last, origin] * rate
     result[0] = 1.0
     for state in range(1, BOUNDARY):
-        inflow = result[0] * flow[0, state]
+        inflow = result[0] * flow[state, 0]
         for origin in range(1, state):
-            inflow = inflow + result[origin] * flow[origin, state]
+            inflow = inflow + result[origin] * flow[state, origin]
         result[state] = inflow
 
 

@@ -29,10 +29,12 @@ def survival(met: Interferers, windows: Windows) -> Survival:
         count_us = _count_us(met, at, mean_count)
         interrupted = (count_us - SLOT_us) / (met.neighbour_us[at] - SLOT_us)
         interrupted = min(max(interrupted, 0.0), 1.0)
-        _fill_moments((1.0 - interrupted) * met.others[at], moments)
+        last = int(max(0.0, windows.left_us[:, at].max() - met.after_us[at]) / SLOT_us)
+        _fill_moments((1.0 - interrupted) * met.others[at], moments[: last + 1])
         for stage in range(STAGES):
             mean_us = met.after_us[at] + count_us * mean_count[stage]
-            result[:, at, stage] = _outcome(met, windows, moments, (at, stage), mean_us)
+            found = _outcome(met, windows, moments, (at, stage), mean_us)
+            result[0, at, stage], result[1, at, stage], result[2, at, stage] = found
     return Survival(result[0], result[1], result[2])
 
 
