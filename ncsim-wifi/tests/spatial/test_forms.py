@@ -56,7 +56,7 @@ def test_pure_work_never_imports_numba():
     code = (
         "import sys\n"
         "from ncsim_wifi.spatial.forms import ARRAYS, forms_for\n"
-        "assert forms_for(10**9) is ARRAYS and 'numba' not in sys.modules\n"
+        "assert forms_for(10**9, 9) is ARRAYS and 'numba' not in sys.modules\n"
     )
 
     subprocess.run([sys.executable, "-c", code], check=True, env={"NCSIM_PURE": "1"})
@@ -65,9 +65,10 @@ def test_pure_work_never_imports_numba():
 def test_numba_is_not_started_for_little_work():
     code = (
         "import sys\n"
-        "from ncsim_wifi.spatial.forms import ARRAYS, WORTH_LOOPS, forms_for\n"
-        "assert forms_for(WORTH_LOOPS - 1) is ARRAYS and 'numba' not in sys.modules\n"
-        "assert forms_for(1) is not ARRAYS\n"
+        "from ncsim_wifi.spatial.forms import ARRAYS, SAVED_us, WORTH_LOOPS_us, forms_for\n"
+        "assert forms_for(WORTH_LOOPS_us // SAVED_us, 1) is ARRAYS\n"
+        "assert 'numba' not in sys.modules\n"
+        "assert forms_for(1, 1) is not ARRAYS\n"
     )
 
     subprocess.run([sys.executable, "-c", code], check=True, env={})

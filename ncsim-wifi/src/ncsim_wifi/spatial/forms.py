@@ -1,8 +1,8 @@
 """In which form the costliest functions are used: arrays of numpy, or compiled loops.
 
 Both give the same bits, so the choice is one of speed alone. Compiled loops pay for themselves only
-in long work, since numba takes seconds to start: they are used from ``WORTH_LOOPS`` steps on,
-counted over a process, or at once where numba has been started already.
+in long work, since numba takes time to start: they are used once the work of a process comes to
+``WORTH_LOOPS_us``, or at once where numba has been started already.
 """
 
 import os
@@ -15,10 +15,13 @@ from typing import Final, NamedTuple
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial import attempts, chains, energy, gaps, occupancy, overlap
 
-WORTH_LOOPS: Final = 4000
-"""Steps that save, at about 1 ms each, what it takes to start numba and to read its cache."""
+SAVED_us: Final = 70
+"""What loops save for each link in a step, about."""
 
-_steps_so_far = 0
+WORTH_LOOPS_us: Final = 2_000_000
+"""What has to be saved; it takes half of that to start numba and to read what it has kept."""
+
+_saved_so_far_us = 0
 
 
 class Forms(NamedTuple):
@@ -45,26 +48,24 @@ ARRAYS: Final = Forms(
 @cache
 def compiled_loops() -> Forms:
     """Return the compiled form; plain loops, which are slow, without numba."""
-    from ncsim_wifi.spatial.compiled.attempts import attempts_of
-    from ncsim_wifi.spatial.compiled.chains import joint_stages
-    from ncsim_wifi.spatial.compiled.energy import silenced_by
-    from ncsim_wifi.spatial.compiled.gaps import survival
-    from ncsim_wifi.spatial.compiled.occupancy import exact_occupancy
-    from ncsim_wifi.spatial.compiled.overlap import helped_kill
+    from ncsim_wifi.spatial.compiled.entries import LOOPS
 
-    return Forms(attempts_of, survival, joint_stages, silenced_by, exact_occupancy, helped_kill)
+    return LOOPS
 
 
-def forms_for(steps: int) -> Forms:
-    """Return the form that is best for this many steps, after those so far.
+def forms_for(steps: int, links: int) -> Forms:
+    """Return the form that is best for some steps, after those so far.
 
     Args:
-        steps: Steps of fixed points that are about to be made.
+        steps: Steps of a fixed point that are about to be made.
+        links: Its number of links.
     """
-    global _steps_so_far  # noqa: PLW0603 - a matter of the process, and of speed only
-    _steps_so_far += steps
-    is_worth = "numba" in sys.modules or _steps_so_far >= WORTH_LOOPS
-    return compiled_loops() if is_worth and may_compile() else ARRAYS
+    global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
+    if not may_compile():
+        return ARRAYS
+    _saved_so_far_us += SAVED_us * steps * links
+    is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_LOOPS_us
+    return compiled_loops() if is_worth else ARRAYS
 
 
 def may_compile() -> bool:

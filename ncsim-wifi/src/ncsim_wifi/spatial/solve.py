@@ -52,7 +52,7 @@ def saturated_goodputs_MBps(plant: Plant, links: Sequence[int]) -> FloatArray:
     if not links:
         return np.zeros(0)
     in_order = plant.in_order(links)
-    forms = forms_for(plant.settings.approximations.iterations)
+    forms = forms_for(plant.settings.approximations.iterations, len(links))
     solved = FixedPoint(scene_of(plant, in_order), forms).goodputs_MBps()
     by_link = dict(zip(in_order, solved.tolist(), strict=True))
     return np.array([by_link[link] for link in links])

@@ -151,7 +151,7 @@ class _Coupled:
         self._paths, self._routes, self._on_air = paths, routes, on_air
         places = [paths.place[link] for link in on_air]
         self._scene = scene_of(paths.plant, places)
-        self._solver = FixedPoint(self._scene, forms_for(STEPS))
+        self._solver = FixedPoint(self._scene, forms_for(STEPS, len(on_air)))
         stations = self._scene.station.tolist()
         wires = {link: -1 - link for link in used if paths.place[link] < 0}
         self._sharing = Sharing(routes, dict(zip(on_air, stations, strict=True)) | wires)

@@ -16,10 +16,10 @@ from ncsim_wifi.spatial.attempts import (
     Exchange,
     IN_VAIN_us,
 )
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import inlined
 
 
-@compiled
+@inlined
 def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
     """Return the attempts of all stations."""
     count = len(contenders.tau)
@@ -40,7 +40,7 @@ def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
     return Attempts(same_slot, rate, activity)
 
 
-@compiled
+@inlined
 def _nobody(same_slot: FloatArray, part: float) -> float:
     """Return how likely nobody starts in the same slot, of whom a part counts."""
     result = 1.0
@@ -49,7 +49,7 @@ def _nobody(same_slot: FloatArray, part: float) -> float:
     return result
 
 
-@compiled
+@inlined
 def _first_in_line(same_slot: FloatArray) -> float:
     """Return E[1 / (1 + colliders)] of one station."""
     share = 0.0
@@ -58,7 +58,7 @@ def _first_in_line(same_slot: FloatArray) -> float:
     return share
 
 
-@compiled
+@inlined
 def _rate_per_us(
     contenders: Contenders, times: Exchange, u: int, same_slot: FloatArray, nobody: float
 ) -> float:

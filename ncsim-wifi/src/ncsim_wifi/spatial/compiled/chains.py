@@ -8,14 +8,14 @@ import numpy as np
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.chains import BOUNDARY, SideRates
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import inlined
 
 LAST = STAGES - 1
 KINDS = 5
 SUCCESS_A, SUCCESS_B, COMMON, LOSS_A, LOSS_B = range(KINDS)
 
 
-@compiled
+@inlined
 def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
     """Return the time-weighted distribution P(a, b) of each chain, shape (chains, 7, 7)."""
     count = len(one.hit)
@@ -38,7 +38,7 @@ def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
     return joint
 
 
-@compiled
+@inlined
 def _fill_rates(
     one: SideRates, two: SideRates, state: tuple[int, int, int], rates: FloatArray
 ) -> None:
@@ -58,7 +58,7 @@ def _fill_rates(
     rates[LOSS_B] = max(0.0, rate_b - success_b - common)
 
 
-@compiled
+@inlined
 def _fill_spread(rates: FloatArray, spread: FloatArray) -> None:
     """Fill P(a, b) of interior states as linear in the boundary states."""
     for a in range(1, STAGES):
@@ -73,7 +73,7 @@ def _fill_spread(rates: FloatArray, spread: FloatArray) -> None:
                 spread[a, b, origin] = cell + into_b * spread[a, b - 1, origin]
 
 
-@compiled
+@inlined
 def _fill_flow(rates: FloatArray, spread: FloatArray, flow: FloatArray) -> None:
     """Fill the rates between boundary states, to one from another."""
     flow[:] = 0.0
@@ -97,14 +97,14 @@ def _fill_flow(rates: FloatArray, spread: FloatArray, flow: FloatArray) -> None:
             _add(top, rates[LAST, LAST, COMMON], spread[LAST, LAST])
 
 
-@compiled
+@inlined
 def _add(inflow: FloatArray, rate: float, spread: FloatArray) -> None:
     """Add what flows out of one state."""
     for origin in range(BOUNDARY):
         inflow[origin] += rate * spread[origin]
 
 
-@compiled
+@inlined
 def _eliminate(flow: FloatArray, result: FloatArray) -> None:
     """Fill the stationary distribution, up to a factor; flows are to one state from another."""
     for last in range(BOUNDARY - 1, 0, -1):
@@ -125,7 +125,7 @@ def _eliminate(flow: FloatArray, result: FloatArray) -> None:
         result[state] = inflow
 
 
-@compiled
+@inlined
 def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray) -> None:
     """Fill P(a, b) of one chain."""
     total = 0.0

@@ -6,11 +6,11 @@ Source: MODEL 3.6; see ``ncsim_wifi.spatial.energy``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import compiled, halving_sum
+from ncsim_wifi.spatial.compiled.compiling import halving_sum, inlined
 from ncsim_wifi.spatial.energy import TINY, GateMasks, Silenced, Silencing
 
 
-@compiled
+@inlined
 def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     """Return how likely stations are silenced, and the gates that follow."""
     weight = np.empty(tables.feasible.shape)
@@ -24,7 +24,7 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     )
 
 
-@compiled
+@inlined
 def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArray) -> float:
     """Fill the weight of each subset of one row; return B."""
     weight[row, 0] = 1.0
@@ -41,7 +41,7 @@ def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArra
     return halving_sum(blocking) / halving_sum(every)
 
 
-@compiled
+@inlined
 def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation."""
     result = np.ones(count)

@@ -11,13 +11,13 @@ from ncsim_wifi.mac.timing import SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import GAUSS_WEIGHT
 from ncsim_wifi.spatial.backoff import LONGEST_COUNTS, STAGES, WINDOWS
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.gaps import NEARLY_ONE, Interferers, Survival, Windows
 
 MOMENTS = 4
 
 
-@compiled
+@inlined
 def survival(met: Interferers, windows: Windows) -> Survival:
     """Return what frames survive, partly overlapped ones included."""
     count = len(met.others)
@@ -38,7 +38,7 @@ def survival(met: Interferers, windows: Windows) -> Survival:
     return Survival(result[0], result[1], result[2])
 
 
-@compiled
+@inlined
 def _mean_counts(share: FloatArray, others: float, mean_count: FloatArray) -> None:
     """Fill Em_k of one relation."""
     power = others
@@ -58,13 +58,13 @@ def _mean_counts(share: FloatArray, others: float, mean_count: FloatArray) -> No
         power = power * power
 
 
-@compiled
+@inlined
 def _law(share: float, stage: int) -> tuple[float, float]:
     window = WINDOWS[stage]
     return (2.0 - share) / window, (1.0 - share) / (window * window)
 
 
-@compiled
+@inlined
 def _count_us(met: Interferers, at: int, mean_count: FloatArray) -> float:
     """Return D_G of one relation."""
     counts = 0.0
@@ -74,7 +74,7 @@ def _count_us(met: Interferers, at: int, mean_count: FloatArray) -> float:
     return float(max(SLOT_us, counting_us / counts))
 
 
-@compiled
+@inlined
 def _fill_moments(base: float, moments: FloatArray) -> None:
     """Fill the sums over n' <= n of n'^i base^n'."""
     term = 1.0
@@ -88,7 +88,7 @@ def _fill_moments(base: float, moments: FloatArray) -> None:
             power = power * n
 
 
-@compiled
+@inlined
 def _outcome(
     met: Interferers,
     windows: Windows,
@@ -123,7 +123,7 @@ def _outcome(
     )
 
 
-@compiled
+@inlined
 def _ending(share: float, others: float, stage: int) -> tuple[float, float, float]:
     """Return c_0, c_1 and c_2 of P_k(n) = (c_0 + c_1 n + c_2 n^2) y^n."""
     linear, square = _law(share, stage)
@@ -134,7 +134,7 @@ def _ending(share: float, others: float, stage: int) -> tuple[float, float, floa
     )
 
 
-@compiled
+@inlined
 def _short(
     room_us: float, law: tuple[float, float, float], longest: float, moments: FloatArray
 ) -> tuple[float, float]:
@@ -148,7 +148,7 @@ def _short(
     return ends, room_us * ends - SLOT_us * counted
 
 
-@compiled
+@inlined
 def _gated(survives: float, on_part: float, before: float, during: float) -> float:
     """Return survival when summed power keeps the two apart part of the time."""
     at_start = min(1.0 - survives, on_part)

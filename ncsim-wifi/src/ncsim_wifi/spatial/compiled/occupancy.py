@@ -6,11 +6,11 @@ Source: MODEL 3.3; see ``ncsim_wifi.spatial.occupancy``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.spatial.compiled.compiling import compiled
+from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.occupancy import FINE, ROUGH, Occupancy, SetTable
 
 
-@compiled
+@inlined
 def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
     """Return the sums over all independent sets; stations of other components see nothing."""
     sets, count = table.members.shape
@@ -32,7 +32,7 @@ def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
     return _normalised(clear, on)
 
 
-@compiled
+@inlined
 def _weights(table: SetTable, activity: FloatArray) -> FloatArray:
     """Return the probability of each set within its component."""
     sets = len(table.component)
@@ -46,7 +46,7 @@ def _weights(table: SetTable, activity: FloatArray) -> FloatArray:
     return weight
 
 
-@compiled
+@inlined
 def _listed(row: FloatArray, places: IntArray) -> IntArray:
     """Return the places of ones in a row."""
     found = 0
@@ -57,7 +57,7 @@ def _listed(row: FloatArray, places: IntArray) -> IntArray:
     return places[:found]
 
 
-@compiled
+@inlined
 def _normalised(clear: FloatArray, on: FloatArray) -> Occupancy:
     """Return the occupancy from sums of rough and fine weights."""
     count = clear.shape[1]

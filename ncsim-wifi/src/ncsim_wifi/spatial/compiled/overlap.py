@@ -6,11 +6,11 @@ Source: MODEL 3.7; see ``ncsim_wifi.spatial.overlap``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import compiled, halving_sum
+from ncsim_wifi.spatial.compiled.compiling import halving_sum, inlined
 from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
 
 
-@compiled
+@inlined
 def helped_kill(
     helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
 ) -> FloatArray:
@@ -35,7 +35,7 @@ def helped_kill(
     return result
 
 
-@compiled
+@inlined
 def _overlap_us(
     helped: Helped, at: int, on: FloatArray, times: tuple[FloatArray, FloatArray]
 ) -> float:
@@ -48,7 +48,7 @@ def _overlap_us(
     return float(helped.scale * min(on_air_us, part * protected_us / met))
 
 
-@compiled
+@inlined
 def _met(
     helped: Helped,
     place: tuple[int, int],

@@ -1,0 +1,73 @@
+"""The compiled functions that are called from outside, as numba keeps them on disk.
+
+numba looks at the file of a function alone, and at the values that it encloses, to see whether what
+it has kept is still good. So all are made here, and enclose what stands for their sources.
+"""
+
+from pathlib import Path
+from typing import Final
+
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
+from ncsim_wifi.spatial.chains import SideRates
+from ncsim_wifi.spatial.compiled import attempts, chains, energy, gaps, occupancy, overlap
+from ncsim_wifi.spatial.compiled.compiling import kept_on_disk
+from ncsim_wifi.spatial.energy import Silenced, Silencing
+from ncsim_wifi.spatial.forms import Forms
+from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows
+from ncsim_wifi.spatial.occupancy import Occupancy, SetTable
+from ncsim_wifi.spatial.overlap import Helped
+
+
+def loops_of(sources: str) -> Forms:
+    """Return the compiled loops.
+
+    Args:
+        sources: Stands for what they are compiled from; not empty.
+    """
+
+    def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
+        assert sources
+        return attempts.attempts_of(contenders, times)
+
+    def survival(met: Interferers, windows: Windows) -> Survival:
+        assert sources
+        return gaps.survival(met, windows)
+
+    def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
+        assert sources
+        return chains.joint_stages(one, two)
+
+    def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
+        assert sources
+        return energy.silenced_by(tables, on)
+
+    def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
+        assert sources
+        return occupancy.exact_occupancy(table, activity)
+
+    def helped_kill(
+        helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+    ) -> FloatArray:
+        assert sources
+        return overlap.helped_kill(helped, on, on_air_us, busy_us)
+
+    return Forms(
+        kept_on_disk(attempts_of),
+        kept_on_disk(survival),
+        kept_on_disk(joint_stages),
+        kept_on_disk(silenced_by),
+        kept_on_disk(exact_occupancy),
+        kept_on_disk(helped_kill),
+    )
+
+
+def _sources() -> str:
+    """Return what changes whenever a file does that the loops are compiled from."""
+    here = Path(__file__).parent
+    files = [*sorted(here.glob("*.py")), *sorted(here.parent.glob("*.py"))]
+    files.append(here.parents[1] / "mac" / "timing.py")
+    return " ".join(f"{file.stat().st_mtime_ns}-{file.stat().st_size}" for file in files)
+
+
+LOOPS: Final = loops_of(_sources())
