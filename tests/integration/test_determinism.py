@@ -4,6 +4,7 @@ import io
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,37 @@ def test_the_bytes_are_those_of_the_golden_trace():
     # Any Python version and machine must agree. After a wanted change of models or format,
     # write it anew and read the difference:  python tests/integration/test_determinism.py
     assert trace_here() == GOLDEN.read_text(encoding="utf-8")
+
+
+PRINT_TRACE_OF_MODEL = f"""
+import os, sys
+if os.environ["NCSIM_PURE"] != "1":
+    import numba  # once it is there, compiled loops are used from the first step on
+from ncsim_core.api import prepare
+from ncsim_core.trace.writer import TraceWriter
+prepare({str(GRID)!r}, observers=[TraceWriter(sys.stdout)], interference=sys.argv[1]).run()
+"""
+FORMS = [
+    {"NCSIM_PURE": "1", "PYTHONHASHSEED": "0", "LC_ALL": "C", "TZ": "UTC"},
+    {"NCSIM_PURE": "0", "PYTHONHASHSEED": "1", "LC_ALL": "tr_TR.UTF-8", "TZ": "Asia/Kathmandu"},
+]
+
+
+@pytest.mark.skipif(not find_spec("numba"), reason="numba is not installed")
+@pytest.mark.parametrize("model", ["csma_bianchi", "csma_clique", "csma_spatial"])
+def test_compiled_or_not_each_radio_model_gives_the_same_bytes_in_any_process(model):
+    pure, compiled = (
+        subprocess.run(
+            [sys.executable, "-c", PRINT_TRACE_OF_MODEL, model],
+            env=os.environ | environment,
+            capture_output=True,
+            check=True,
+        ).stdout
+        for environment in FORMS
+    )
+
+    assert compiled == pure
+    assert b'"k":"done","status":"completed"' in pure
 
 
 RUN_AND_HASH = f"""
