@@ -23,6 +23,7 @@ HERE: Final = Path(__file__).parent
 WORK: Final = Path("/tmp/ncsim-fuzz")
 MEMORY_BYTES: Final = 1 << 30
 SECONDS_PER_INPUT: Final = 900
+MAX_BYTES: Final = 12_000
 ODD_VALUES: Final = (HERE / "odd_values.txt").read_text("utf-8").split()
 SEEDS: Final = {
     "scenario_yaml": ("examples/*.yaml", "ncsim-core/tests/scenario/bad/*.yaml"),
@@ -121,7 +122,11 @@ def fuzz_by_coverage(name: str, corpus: Path, seconds: int) -> None:
             return atheris.Mutate(data, max_size)
         return mutated(data, chance)[:max_size]
 
-    limits = [f"-max_total_time={seconds}", f"-timeout={SECONDS_PER_INPUT}", "-max_len=6000"]
+    limits = [
+        f"-max_total_time={seconds}",
+        f"-timeout={SECONDS_PER_INPUT}",
+        f"-max_len={MAX_BYTES}",
+    ]
     places = [f"-artifact_prefix={corpus.parent}/", f"-rss_limit_mb={MEMORY_BYTES >> 20}"]
     arguments = [sys.argv[0], *limits, *places, "-print_final_stats=1", str(corpus)]
     atheris.Setup(arguments, target, custom_mutator=mutate)

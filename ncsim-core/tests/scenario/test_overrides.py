@@ -69,6 +69,7 @@ def test_without_interference_the_radio_keeps_its_rates(with_antenna: Registry):
             "override air.noise_dBm=inf  config.air.noise_dBm: must be at most 0",
         ),
         ({"interference": 5}, "override interference=5  config.interference: must be the name"),
+        ({"fog.depth.m": 2}, "override fog.depth.m=2  config.fog: unknown key 'fog'; known"),
         ({"interference": "fog"}, "override interference='fog'  config.interference: unknown"),
     ],
 )

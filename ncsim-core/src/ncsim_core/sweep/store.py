@@ -9,10 +9,12 @@ import json
 import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Final, Self
 
 from ncsim_core.errors import ScenarioError
+from ncsim_core.sweep.damage import checked_row, is_whole, reading
 from ncsim_core.sweep.plan import SweepPlan, canonical, plan_from_json
 from ncsim_core.sweep.worker import Item, ResultRow
 
@@ -43,6 +45,12 @@ _SAVE = (
     f"INSERT INTO result ({_COLUMNS}) VALUES ({_MARKS}) "
     f"ON CONFLICT (key) DO UPDATE SET {_CHANGES} WHERE result.status <> 'completed'"
 )
+_ALL: Final = (
+    f"SELECT {_COLUMNS} FROM result",
+    "SELECT digest, name, document, runs, turn FROM plan",
+    "SELECT plan, number, point, seed, key FROM member",
+)
+"""Everything that a study holds."""
 
 
 class Store:
@@ -64,14 +72,12 @@ class Store:
             raise ScenarioError(f"{path}: is a file; a study is a folder")
         if path is not None:
             path.mkdir(parents=True, exist_ok=True)
-        try:
+        with self._reading():
             if file is not None and must_exist and not os.access(file.parent, os.W_OK):
                 self._connection = _opened_for_reading(file)
             else:
                 self._connection = _opened(file)
             self._check_format()
-        except sqlite3.DatabaseError as error:
-            raise ScenarioError(f"{file}: {error}") from error
 
     def __enter__(self) -> Self:
         return self
@@ -99,11 +105,16 @@ class Store:
         Raises:
             ScenarioError: There is none.
         """
-        query = "SELECT document, runs FROM plan ORDER BY turn DESC LIMIT 1"
-        row = self._connection.execute(query).fetchone()
-        if row is None:
-            raise ScenarioError(f"{self.path}: holds no sweep")
-        return plan_from_json(row[0]), row[1]
+        query = "SELECT document, runs, digest FROM plan ORDER BY turn DESC LIMIT 1"
+        with self._reading():
+            row = self._connection.execute(query).fetchone()
+            if row is None:
+                raise ScenarioError(f"{self.path}: holds no sweep")
+            document, runs, digest = row
+            plan = plan_from_json(document)
+            if plan.digest != digest or not is_whole(runs):
+                raise ValueError("the sweep in it is not the one that was put in")
+            return plan, runs
 
     def enrol(self, plan: SweepPlan, items: Sequence[Item]) -> None:
         """Note which runs belong to a plan."""
@@ -143,7 +154,8 @@ class Store:
             part = keys[start : start + LOOKUP]
             marks = ", ".join("?" * len(part))
             query = f"SELECT {_COLUMNS} FROM result WHERE key IN ({marks})"
-            rows = map(ResultRow._make, self._connection.execute(query, part))
+            with self._reading():
+                rows = list(map(checked_row, self._connection.execute(query, part)))
             found |= {row.key: row for row in rows if not (retry_failed and row.status in RETRIED)}
         return found
 
@@ -155,9 +167,12 @@ class Store:
             f"SELECT point, seed, {columns} FROM member LEFT JOIN result "
             "ON result.key = member.key WHERE plan = ? ORDER BY number"
         )
-        for point, seed, *result in self._connection.execute(query, (plan.digest,)):
-            row = None if result[0] is None else ResultRow._make(result)
-            yield tuple(json.loads(point)), seed, row
+        with self._reading():
+            for text, seed, *result in self._connection.execute(query, (plan.digest,)):
+                point = tuple(json.loads(text))
+                if len(point) != len(plan.columns) or not is_whole(seed):
+                    raise ValueError(f"{text!r} with seed {seed!r} is no run of the sweep")
+                yield point, seed, None if result[0] is None else checked_row(result)
 
     def counts(self) -> dict[str, int]:
         """Return how many runs of the current plan ended how."""
@@ -166,7 +181,8 @@ class Store:
             "SELECT status, count(*) FROM member JOIN result ON result.key = member.key "
             "WHERE plan = ? GROUP BY status ORDER BY status"
         )
-        return dict(self._connection.execute(query, (plan.digest,)).fetchall())
+        with self._reading():
+            return dict(self._connection.execute(query, (plan.digest,)).fetchall())
 
     def errors(self, most: int) -> list[tuple[str, str, int]]:
         """Return status, error and number of runs of the most frequent errors."""
@@ -176,18 +192,25 @@ class Store:
             "ON result.key = member.key WHERE plan = ? AND error IS NOT NULL "
             "GROUP BY status, error ORDER BY runs DESC, status, error LIMIT ?"
         )
-        return [tuple(row) for row in self._connection.execute(query, (plan.digest, most))]
+        with self._reading():
+            return [tuple(row) for row in self._connection.execute(query, (plan.digest, most))]
 
     def merge(self, other: "Store") -> None:
         """Take over all that another study holds."""
-        source = other._connection  # noqa: SLF001 - of the same class
+        results, plans, members = (other._read(each) for each in _ALL)  # noqa: SLF001 - same class
         with self._transaction() as connection:
-            rows = source.execute(f"SELECT {_COLUMNS} FROM result")
-            connection.executemany(_SAVE, rows)
-            plans = source.execute("SELECT digest, name, document, runs, turn FROM plan")
+            connection.executemany(_SAVE, results)
             connection.executemany("INSERT OR IGNORE INTO plan VALUES (?, ?, ?, ?, ?)", plans)
-            members = source.execute("SELECT plan, number, point, seed, key FROM member")
             connection.executemany("INSERT OR IGNORE INTO member VALUES (?, ?, ?, ?, ?)", members)
+
+    def _read(self, query: str) -> Iterator[tuple[Any, ...]]:
+        """Yield rows; results among them checked."""
+        with self._reading():
+            for row in self._connection.execute(query):
+                yield checked_row(row) if query == _ALL[0] else row
+
+    def _reading(self) -> AbstractContextManager[None]:
+        return reading(Path(STORE_NAME) if self.path is None else self.path / STORE_NAME)
 
     def _transaction(self) -> "_Transaction":
         return _Transaction(self._connection, self.path)
