@@ -13,6 +13,8 @@ from ncsim_wifi.spatial.compiled.compiling import inlined
 LAST = STAGES - 1
 KINDS = 5
 SUCCESS_A, SUCCESS_B, COMMON, LOSS_A, LOSS_B = range(KINDS)
+SIDE_RATES = 5
+SURVIVES, HIT, SHARE, OTHER, RATE = range(SIDE_RATES)
 
 
 @inlined
@@ -25,37 +27,49 @@ def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
     for stage in range(STAGES):
         spread[0, stage, stage] = 1.0
         spread[stage, 0, stage + STAGES - 1 if stage else 0] = 1.0
-    flow = np.empty((BOUNDARY, BOUNDARY))
+    flow = np.empty((BOUNDARY + 1, BOUNDARY))
     boundary = np.empty(BOUNDARY)
+    sides = np.empty((2, SIDE_RATES, STAGES))
     for chain in range(count):
-        for a in range(STAGES):
-            for b in range(STAGES):
-                _fill_rates(one, two, (chain, a, b), rates[a, b])
+        _fill_side(one, chain, sides[0])
+        _fill_side(two, chain, sides[1])
+        _fill_rates(sides, rates)
         _fill_spread(rates, spread)
         _fill_flow(rates, spread, flow)
         _eliminate(flow, boundary)
-        _weigh(spread, boundary, joint[chain])
+        _weigh(spread, boundary, joint, chain)
     return joint
 
 
 @inlined
-def _fill_rates(
-    one: SideRates, two: SideRates, state: tuple[int, int, int], rates: FloatArray
-) -> None:
-    """Fill the rates out of one state of one chain."""
-    chain, a, b = state
-    rate_a, rate_b = 1.0 / one.cycle_us[chain, a], 1.0 / two.cycle_us[chain, b]
-    survives_a, survives_b = one.survives[chain, b], two.survives[chain, a]
-    hit_a, hit_b = max(one.hit[chain, b], 1e-12), max(two.hit[chain, a], 1e-12)
-    success_a = survives_a * one.other[chain, a] * rate_a
-    success_b = survives_b * two.other[chain, b] * rate_b
-    overlaps = min(hit_a * one.share[chain, b] * rate_a, hit_b * two.share[chain, a] * rate_b)
-    lost_a = min(1.0, (1.0 - survives_a) / hit_a)
-    lost_b = min(1.0, (1.0 - survives_b) / hit_b)
-    common = overlaps * lost_a * lost_b
-    rates[SUCCESS_A], rates[SUCCESS_B], rates[COMMON] = success_a, success_b, common
-    rates[LOSS_A] = max(0.0, rate_a - success_a - common)
-    rates[LOSS_B] = max(0.0, rate_b - success_b - common)
+def _fill_side(side: SideRates, chain: int, values: FloatArray) -> None:
+    for stage in range(STAGES):
+        values[SURVIVES, stage] = side.survives[chain, stage]
+        values[HIT, stage] = max(side.hit[chain, stage], 1e-12)
+        values[SHARE, stage] = side.share[chain, stage]
+        values[OTHER, stage] = side.other[chain, stage]
+        values[RATE, stage] = 1.0 / side.cycle_us[chain, stage]
+
+
+@inlined
+def _fill_rates(sides: FloatArray, rates: FloatArray) -> None:
+    """Fill the rates out of all states of one chain; a, b are stages of the two sides."""
+    for a in range(STAGES):
+        for b in range(STAGES):
+            rate_a, rate_b = sides[0, RATE, a], sides[1, RATE, b]
+            survives_a, survives_b = sides[0, SURVIVES, b], sides[1, SURVIVES, a]
+            hit_a, hit_b = sides[0, HIT, b], sides[1, HIT, a]
+            success_a = survives_a * sides[0, OTHER, a] * rate_a
+            success_b = survives_b * sides[1, OTHER, b] * rate_b
+            overlaps_a = hit_a * sides[0, SHARE, b] * rate_a
+            overlaps_b = hit_b * sides[1, SHARE, a] * rate_b
+            lost_a = min(1.0, (1.0 - survives_a) / hit_a)
+            lost_b = min(1.0, (1.0 - survives_b) / hit_b)
+            common = min(overlaps_a, overlaps_b) * lost_a * lost_b
+            rates[a, b, SUCCESS_A], rates[a, b, SUCCESS_B] = success_a, success_b
+            rates[a, b, COMMON] = common
+            rates[a, b, LOSS_A] = max(0.0, rate_a - success_a - common)
+            rates[a, b, LOSS_B] = max(0.0, rate_b - success_b - common)
 
 
 @inlined
@@ -77,31 +91,37 @@ def _fill_spread(rates: FloatArray, spread: FloatArray) -> None:
 def _fill_flow(rates: FloatArray, spread: FloatArray, flow: FloatArray) -> None:
     """Fill the rates between boundary states, to one from another."""
     flow[:] = 0.0
-    side = np.empty(BOUNDARY)
     for stage in range(STAGES):
-        top, below = flow[stage], stage - 1
-        side[:] = 0.0
+        top, side, below = stage, STAGES - 1 + stage if stage else BOUNDARY, stage - 1
         for k in range(STAGES):
-            _add(top, rates[k, stage, SUCCESS_A], spread[k, stage])
-            _add(side, rates[stage, k, SUCCESS_B], spread[stage, k])
-        _add(top, rates[LAST, stage, LOSS_A], spread[LAST, stage])
-        _add(side, rates[stage, LAST, LOSS_B], spread[stage, LAST])
+            _add(flow, top, rates, SUCCESS_A, spread, (k, stage))
+            _add(flow, side, rates, SUCCESS_B, spread, (stage, k))
+        _add(flow, top, rates, LOSS_A, spread, (LAST, stage))
+        _add(flow, side, rates, LOSS_B, spread, (stage, LAST))
         if stage:
-            _add(top, rates[0, below, LOSS_B], spread[0, below])
-            _add(top, rates[LAST, below, COMMON], spread[LAST, below])
-            _add(side, rates[below, 0, LOSS_A], spread[below, 0])
-            _add(side, rates[below, LAST, COMMON], spread[below, LAST])
-            flow[STAGES - 1 + stage] = side
-        else:
-            _add(top, 1.0, side)
-            _add(top, rates[LAST, LAST, COMMON], spread[LAST, LAST])
+            _add(flow, top, rates, LOSS_B, spread, (0, below))
+            _add(flow, top, rates, COMMON, spread, (LAST, below))
+            _add(flow, side, rates, LOSS_A, spread, (below, 0))
+            _add(flow, side, rates, COMMON, spread, (below, LAST))
+    for origin in range(BOUNDARY):  # what flows into (0, 0) as a state of both kinds
+        flow[0, origin] += flow[BOUNDARY, origin]
+    _add(flow, 0, rates, COMMON, spread, (LAST, LAST))
 
 
 @inlined
-def _add(inflow: FloatArray, rate: float, spread: FloatArray) -> None:
-    """Add what flows out of one state."""
+def _add(
+    flow: FloatArray,
+    target: int,
+    rates: FloatArray,
+    kind: int,
+    spread: FloatArray,
+    state: tuple[int, int],
+) -> None:
+    """Add what flows out of one state into a boundary state."""
+    a, b = state
+    rate = rates[a, b, kind]
     for origin in range(BOUNDARY):
-        inflow[origin] += rate * spread[origin]
+        flow[target, origin] += rate * spread[a, b, origin]
 
 
 @inlined
@@ -126,15 +146,16 @@ def _eliminate(flow: FloatArray, result: FloatArray) -> None:
 
 
 @inlined
-def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray) -> None:
+def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray, chain: int) -> None:
     """Fill P(a, b) of one chain."""
     total = 0.0
     for a in range(STAGES):
         for b in range(STAGES):
-            joint[a, b] = spread[a, b, 0] * boundary[0]
+            cell = spread[a, b, 0] * boundary[0]
             for origin in range(1, BOUNDARY):
-                joint[a, b] += spread[a, b, origin] * boundary[origin]
-            total = total + joint[a, b]
+                cell = cell + spread[a, b, origin] * boundary[origin]
+            joint[chain, a, b] = cell
+            total = total + cell
     for a in range(STAGES):
         for b in range(STAGES):
-            joint[a, b] /= total
+            joint[chain, a, b] /= total

@@ -4,6 +4,7 @@ Source: MODEL 3.8; see ``ncsim_wifi.spatial.gaps``.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,25 +18,57 @@ from ncsim_wifi.spatial.gaps import NEARLY_ONE, Interferers, Survival, Windows
 MOMENTS = 4
 
 
+class Relation(NamedTuple):
+    """One relation; as in ``Interferers`` and ``Windows``."""
+
+    left_us: FloatArray
+    borne_us: FloatArray
+    after_us: float
+    on_air_us: float
+    rest_us: float
+    immune: float
+    is_strong: bool
+    before: float
+    during: float
+
+
 @inlined
 def survival(met: Interferers, windows: Windows) -> Survival:
     """Return what frames survive, partly overlapped ones included."""
     count = len(met.others)
-    result = np.empty((3, count, STAGES))
+    survives, missed, found_free = np.empty((3, count, STAGES))
     moments = np.empty((int(windows.longest_us / SLOT_us) + 2, MOMENTS))
     mean_count = np.empty(STAGES)
     for at in range(count):
+        relation = _relation(met, windows, at)
         _mean_counts(met.share[at], met.others[at], mean_count)
         count_us = _count_us(met, at, mean_count)
         interrupted = (count_us - SLOT_us) / (met.neighbour_us[at] - SLOT_us)
         interrupted = min(max(interrupted, 0.0), 1.0)
-        last = int(max(0.0, windows.left_us[:, at].max() - met.after_us[at]) / SLOT_us)
+        last = int(max(0.0, relation.left_us.max() - relation.after_us) / SLOT_us)
         _fill_moments((1.0 - interrupted) * met.others[at], moments[: last + 1])
         for stage in range(STAGES):
-            mean_us = met.after_us[at] + count_us * mean_count[stage]
-            found = _outcome(met, windows, moments, (at, stage), mean_us)
-            result[0, at, stage], result[1, at, stage], result[2, at, stage] = found
-    return Survival(result[0], result[1], result[2])
+            law = _ending(met.share[at, stage], met.others[at], stage)
+            mean_us = relation.after_us + count_us * mean_count[stage]
+            found = _outcome(relation, moments, law, mean_us, LONGEST_COUNTS[stage])
+            survives[at, stage], missed[at, stage], found_free[at, stage] = found
+    return Survival(survives, missed, found_free)
+
+
+@inlined
+def _relation(met: Interferers, windows: Windows, at: int) -> Relation:
+    after_us = met.after_us[at]
+    return Relation(
+        windows.left_us[:, at],
+        windows.borne_us[:, at],
+        after_us,
+        met.on_air_us[at],
+        met.on_air_us[at] + met.overhead_us[at] - after_us,
+        windows.immune[at],
+        windows.is_strong[at],
+        windows.before[at],
+        windows.during[at],
+    )
 
 
 @inlined
@@ -90,32 +123,28 @@ def _fill_moments(base: float, moments: FloatArray) -> None:
 
 @inlined
 def _outcome(
-    met: Interferers,
-    windows: Windows,
+    relation: Relation,
     moments: FloatArray,
-    place: tuple[int, int],
+    law: tuple[float, float, float],
     mean_us: float,
+    longest: float,
 ) -> tuple[float, float, float]:
     """Return s_k, nohit_k and how likely the receiver is free, of one relation and stage."""
-    at, stage = place
-    after_us, is_strong = met.after_us[at], windows.is_strong[at]
-    law = _ending(met.share[at, stage], met.others[at], stage)
-    cycle_us = mean_us + (met.on_air_us[at] + met.overhead_us[at] - after_us)
-    full = mean_us / cycle_us if is_strong else 1.0
-    survives = windows.immune[at] * full
+    cycle_us = mean_us + relation.rest_us
+    full = mean_us / cycle_us if relation.is_strong else 1.0
+    survives = relation.immune * full
     missed = room_us = 0.0
-    for number in range(len(windows.left_us)):
-        left_us = windows.left_us[number, at]
-        ends, spare_us = _short(left_us - after_us, law, LONGEST_COUNTS[stage], moments)
+    for number in range(len(relation.left_us)):
+        left_us = relation.left_us[number]
+        ends, spare_us = _short(left_us - relation.after_us, law, longest, moments)
         room_us = max(0.0, mean_us - left_us + spare_us)
         if number == 0:
             missed = room_us / cycle_us
         elif number <= len(GAUSS_WEIGHT):
-            partly_us = 0.0 if is_strong else windows.borne_us[number - 1, at] * (1.0 - ends)
-            weight = (1.0 - windows.immune[at]) * GAUSS_WEIGHT[number - 1]
+            partly_us = 0.0 if relation.is_strong else relation.borne_us[number - 1] * (1.0 - ends)
+            weight = (1.0 - relation.immune) * GAUSS_WEIGHT[number - 1]
             survives = survives + weight * min((room_us + partly_us) / cycle_us, full)
-    on_part = met.on_air_us[at] / cycle_us
-    before, during = windows.before[at], windows.during[at]
+    on_part, before, during = relation.on_air_us / cycle_us, relation.before, relation.during
     return (
         _gated(survives, on_part, before, during),
         _gated(missed, on_part, before, during),
@@ -142,9 +171,9 @@ def _short(
     last = min(math.floor(room_us / SLOT_us), longest)
     if last < 0.0:
         return 0.0, 0.0
-    row = moments[int(last)]
-    ends = law[0] * row[0] + law[1] * row[1] + law[2] * row[2]
-    counted = law[0] * row[1] + law[1] * row[2] + law[2] * row[3]
+    n = int(last)
+    ends = law[0] * moments[n, 0] + law[1] * moments[n, 1] + law[2] * moments[n, 2]
+    counted = law[0] * moments[n, 1] + law[1] * moments[n, 2] + law[2] * moments[n, 3]
     return ends, room_us * ends - SLOT_us * counted
 
 

@@ -19,10 +19,18 @@ def helped_kill(
     result = np.empty(count)
     chance, killed = np.empty(1 << helpers), np.empty(1 << helpers)
     for at in range(count):
-        window_us = _overlap_us(helped, at, on, (on_air_us, busy_us))
+        own, station = helped.own[at], helped.station[at]
+        part = min(max(on[own, station], LEAST_ON), LARGEST_ON)
+        window_us = _overlap_us(
+            on_air_us[station], busy_us[station] / part, helped.protected_us[at], helped.scale
+        )
         chance[0] = 1.0
         for place in range(helpers):
-            met = _met(helped, (at, place), on, (on_air_us, busy_us), window_us)
+            helper, met = helped.helper[at, place], 0.0
+            if helper >= 0:
+                part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
+                part = part * (on_air_us[helper] / busy_us[helper])
+                met = _met(part, on_air_us[helper], window_us)
             half = 1 << place
             for held in range(half):
                 chance[half + held] = chance[held] * met
@@ -36,31 +44,15 @@ def helped_kill(
 
 
 @inlined
-def _overlap_us(
-    helped: Helped, at: int, on: FloatArray, times: tuple[FloatArray, FloatArray]
-) -> float:
+def _overlap_us(on_air_us: float, cycle_us: float, protected_us: float, scale: float) -> float:
     """Return L_o of one relation."""
-    station, protected_us = helped.station[at], helped.protected_us[at]
-    on_air_us, busy_us = times[0][station], times[1][station]
-    cycle_us = busy_us / min(max(on[helped.own[at], station], LEAST_ON), LARGEST_ON)
     part = on_air_us / cycle_us
     met = min(1.0, (protected_us + on_air_us) / cycle_us)
-    return float(helped.scale * min(on_air_us, part * protected_us / met))
+    return scale * min(on_air_us, part * protected_us / met)
 
 
 @inlined
-def _met(
-    helped: Helped,
-    place: tuple[int, int],
-    on: FloatArray,
-    times: tuple[FloatArray, FloatArray],
-    window_us: float,
-) -> float:
-    """Return x_k of one helper of one relation, 0 where there is none."""
-    helper = helped.helper[place]
-    if helper < 0:
-        return 0.0
-    on_air_us, busy_us = times[0][helper], times[1][helper]
-    part = min(max(on[helped.own[place[0]], helper], LEAST_ON), LARGEST_ON) * (on_air_us / busy_us)
+def _met(part: float, on_air_us: float, window_us: float) -> float:
+    """Return x_k of one helper of one relation."""
     off_us = on_air_us * (1.0 / part - 1.0)
-    return float(1.0 - (1.0 - part) * max(0.0, 1.0 - window_us / max(off_us, 1e-9)))
+    return 1.0 - (1.0 - part) * max(0.0, 1.0 - window_us / max(off_us, 1e-9))
