@@ -1,5 +1,8 @@
-"""How long csma_spatial takes per active set: ``python benchmarks/csma_spatial.py``."""
+"""How long csma_spatial takes, with arrays and compiled: ``python benchmarks/csma_spatial.py``."""
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from functools import partial
@@ -13,9 +16,12 @@ from ncsim_core.testing.builders import make_context, rated
 from ncsim_core.testing.oracle import FewestHops
 from ncsim_wifi.interference_models.csma_spatial import CsmaSpatialModel, csma_spatial
 from ncsim_wifi.phy.mcs import read_table
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial import forms
 from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.scene import scene_of
 from ncsim_wifi.spatial.settings import Settings
-from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
+from ncsim_wifi.spatial.solve import FixedPoint
 
 REPEATS = 7
 SIZE = 5
@@ -52,21 +58,65 @@ def cpu_ms(solve: Callable[[], object]) -> list[float]:
 
 
 def main() -> None:
-    """Print median and least CPU time for each number of active links, and of transfers."""
+    """Print median and least CPU time of active sets, of transfers and of whole runs."""
+    both = {"arrays": forms.ARRAYS}
+    if forms.may_compile():
+        both["compiled"] = forms.compiled_loops()
     for count, side_m in ((1, 100.0), (10, 200.0), (30, 400.0), (100, 700.0)):
-        plant = random_plant(count, side_m)
-        took_ms = cpu_ms(partial(saturated_goodputs_MBps, plant, range(count)))
-        print(
-            f"{count:4d} active links in {side_m:.0f} m: "
-            f"{median(took_ms):.1f} ms (least {min(took_ms):.1f})"
-        )
+        scene = scene_of(random_plant(count, side_m), range(count))
+        for name, form in both.items():
+            solve = partial(solved, scene.plant, count, form)
+            print(f"{count:4d} active links in {side_m:.0f} m, {name}: {told(solve)}")
     for count in (4, 16):
         routes = grid_routes(count)
-        took_ms = cpu_ms(lambda routes=routes: fresh_model().route_rates(routes))
-        print(
-            f"{count:4d} transfers of 1 to 4 hops on a 5x5 grid: "
-            f"{median(took_ms):.1f} ms (least {min(took_ms):.1f})"
-        )
+        name = "compiled" if forms.may_compile() else "arrays"
+        took = told(lambda routes=routes: fresh_model().route_rates(routes))
+        print(f"{count:4d} transfers of 1 to 4 hops on a 5x5 grid, {name}: {took}")
+    for scheduler in ("heft", "cpop", "round_robin"):
+        for routing in ("widest_path", "minimum_hop"):
+            took = ", ".join(f"{name} {run_s(scheduler, routing, name):.2f} s" for name in both)
+            print(f"20 tasks on a 4x4 grid, {scheduler}, {routing}: {took}")
+
+
+def solved(plant: Plant, count: int, form: forms.Forms) -> FloatArray:
+    """Return the goodputs of all links, worked out from nothing."""
+    return FixedPoint(scene_of(plant, range(count)), form).goodputs_MBps()
+
+
+def told(solve: Callable[[], object]) -> str:
+    """Return median and least CPU time in words, the first time apart."""
+    solve()
+    took_ms = cpu_ms(solve)
+    return f"{median(took_ms):.1f} ms (least {min(took_ms):.1f})"
+
+
+RUN = """
+import sys, time
+scheduler, routing, form = sys.argv[1:]
+if form == "compiled":
+    from ncsim_wifi.spatial.forms import compiled_loops
+    compiled_loops()
+from ncsim_core import simulate
+from ncsim_core.generators.paper import paper_dag, paper_grid
+from ncsim_core.scenario.making import make_scenario
+config = {"scheduler": scheduler, "routing": routing, "interference": "csma_spatial"}
+simulate(make_scenario("first", paper_grid(2), [paper_dag(10)], config))
+began_s = time.process_time()
+simulate(make_scenario("run", paper_grid(4), [paper_dag(20)], config))
+print(time.process_time() - began_s)
+"""
+
+
+def run_s(scheduler: str, routing: str, form: str) -> float:
+    """Return the CPU time of a run in a process of its own, after a small one.
+
+    Compiled, numba has been started and what it keeps has been read before.
+    """
+    pure = "1" if form == "arrays" else ""
+    command = [sys.executable, "-c", RUN, scheduler, routing, form]
+    environment = os.environ | {"NCSIM_PURE": pure}
+    done = subprocess.run(command, env=environment, capture_output=True, check=True)
+    return float(done.stdout)
 
 
 def fresh_model() -> CsmaSpatialModel:
