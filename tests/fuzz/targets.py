@@ -27,6 +27,7 @@ from ncsim_core.scenario.loader import load_scenario, parse_scenario
 from ncsim_core.scenario.model import Scenario, dag_row
 from ncsim_core.scenario.wfcommons import read_workflow
 from ncsim_core.scenario.yaml_text import dump_yaml
+from ncsim_core.sweep.plan import plan_from_json
 from ncsim_core.sweep.reading import load_sweep
 from ncsim_core.sweep.store import STORE_NAME, Store
 from ncsim_core.trace.check import check_trace
@@ -47,7 +48,7 @@ MAX_RUN_SIZE: Final = 60
 LINE_OF_TRACE: Final = re.compile(r"trace\.jsonl(:\d+: |: (cannot be read|this run|is zstd))")
 
 
-SAYS_COLUMN: Final = re.compile(r"is not varied|is no column|holds no sweep")
+SAYS_COLUMN: Final = re.compile(r"is not varied|is no column|holds no sweep|is of format")
 BASE: Final = load_scenario(Path(__file__).parents[2] / "examples" / "two_hop.yaml")
 CONTRADICTION: Final = re.compile(r"contradicts itself|has no makespan")
 T = TypeVar("T")
@@ -123,6 +124,7 @@ def sweep(data: bytes) -> None:
     except NcsimError as error:
         _expect_places(error)
         return
+    assert plan_from_json(plan.to_json()).digest == plan.digest
     for run in islice(plan.runs(), 5):
         assert len(run.values) == len(plan.columns)
 

@@ -181,6 +181,21 @@ def test_a_run_that_ends_in_time_is_not_touched_by_limits(scenario):
     assert plain.stdout == limited.stdout
 
 
+@pytest.mark.parametrize("option", ["--max-time", "--max-wall", "--max-memory"])
+@pytest.mark.parametrize("value", ["nan", "inf"])
+def test_a_limit_that_is_no_number_is_refused_and_not_passed_over(option, value, scenario):
+    done = ncsim("run", scenario, option, value)
+
+    assert done.returncode == 1
+    assert f"{option} {value}: must be finite" in done.stderr
+
+
+def test_limits_beyond_what_a_system_knows_are_no_limits(scenario):
+    done = ncsim("run", scenario, "--max-time", 1e300, "--max-wall", 1e300, "--max-memory", 1e300)
+
+    assert done.returncode == 0, done.stderr
+
+
 def test_an_output_folder_that_is_removed_during_a_run_is_told(scenario, tmp_path):
     parent = tmp_path / "parent"
     parent.mkdir()

@@ -9,6 +9,7 @@ from typing import Any, Final
 from ncsim_core.errors import ScenarioError
 
 BYTES_PER_MB: Final = 1_000_000
+MOST_BYTES: Final = 1 << 62
 
 
 @contextlib.contextmanager
@@ -30,7 +31,7 @@ def limited_memory(memory_MB: float | None) -> Iterator[None]:
     except (ImportError, OSError):
         raise ScenarioError("a limit on memory needs Linux") from None
     before = resource.getrlimit(resource.RLIMIT_AS)
-    most = pages * resource.getpagesize() + round(memory_MB * BYTES_PER_MB)
+    most = min(MOST_BYTES, pages * resource.getpagesize() + round(memory_MB * BYTES_PER_MB))
     resource.setrlimit(resource.RLIMIT_AS, (most, before[1]))
     try:
         yield

@@ -56,6 +56,8 @@ BAD = [
     ("seeds: 10", "seeds: 10, pair: [schedler]", "11:33", "did you mean 'scheduler'"),
     ("wall_s: 60", "wall: 60", "12:12", "did you mean 'wall_s'"),
     ("wall_s: 60", "wall_s: 0", "12:20", "must be greater than 0, not 0"),
+    ("wall_s: 60", "wall_s: .nan", "12:20", "must be a finite number, not nan"),
+    ("wall_s: 60", "memory_MB: .inf", "12:23", "must be a finite number, not inf"),
     ("wall_s: 60}", "wall_s: 60", "13:1", "not valid YAML"),
     ("  vary:", "  zip: [{seed: [1, 2], queue: [fifo]}]\n  vary:", "7:9", "not 2, 1"),
     ("  vary:", "  zip: [{scheduler: [manual]}]\n  vary:", "7:10", "'scheduler' is varied twice"),

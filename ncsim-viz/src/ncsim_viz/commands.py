@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from ncsim_core.cli.choices import refuse_endless
 from ncsim_core.errors import ScenarioError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -30,7 +31,9 @@ def view(  # noqa: PLR0913 - one parameter per option
         typer.Option(metavar="DIR", help="Serve all runs and studies below DIR, live ones too."),
     ] = None,
     *,
-    port: Annotated[int, typer.Option(help="Of --serve; 0 takes a free one.", min=0)] = 0,
+    port: Annotated[
+        int, typer.Option(help="Of --serve; 0 takes a free one.", min=0, max=65535)
+    ] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open a browser.")] = True,
     max_wall: Annotated[
         float, typer.Option(help="Seconds that a run from the page may take.", min=1)
@@ -51,6 +54,7 @@ def view(  # noqa: PLR0913 - one parameter per option
     """
     if (run is None) == (serve is None):
         raise ScenarioError("give a run or a study, or --serve DIR for all in a folder")
+    refuse_endless(max_wall=max_wall)
     if serve is not None:
         _serve(serve, port, (max_wall, max_memory), opens_browser=browser)
     elif run is not None and terminal:

@@ -1,6 +1,7 @@
 """Options that several verbs share: which scenario values to override, and when to give up."""
 
 import json
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
@@ -67,6 +68,21 @@ def overrides_of(settings: Sequence[str] | None, **named: object) -> dict[str, o
             )
         overrides[key.strip()] = _value(text)
     return overrides | {key: value for key, value in named.items() if value is not None}
+
+
+def refuse_endless(**limits: float | None) -> None:
+    """Raise if a limit of an option is infinite or not a number.
+
+    Args:
+        **limits: By the option's name, as Python spells it.
+
+    Raises:
+        ScenarioError: One is.
+    """
+    for name, value in limits.items():
+        if value is not None and not math.isfinite(value):
+            option = f"--{name.replace('_', '-')}"
+            raise ScenarioError(f"{option} {value}: must be finite; leave it out for no limit")
 
 
 def limits_of(max_events: int | None, max_time_s: float | None) -> "Limits":

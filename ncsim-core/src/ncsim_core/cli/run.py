@@ -21,6 +21,7 @@ from ncsim_core.cli.choices import (
     component_line,
     limits_of,
     overrides_of,
+    refuse_endless,
 )
 from ncsim_core.cli.exit_codes import ExitCode
 
@@ -61,6 +62,7 @@ def run(  # noqa: PLR0913 - one parameter per option
     from ncsim_core.cli.running import RunRequest, execute
     from ncsim_core.scenario.loader import load_scenario
 
+    refuse_endless(max_time=max_time, max_wall=max_wall, max_memory=max_memory)
     overrides = overrides_of(
         settings, scheduler=scheduler, routing=routing, interference=interference, seed=seed
     )

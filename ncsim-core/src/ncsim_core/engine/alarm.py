@@ -19,6 +19,8 @@ from ncsim_core.registry.building import contract_of
 
 GRACE_s: Final = 1.0
 """What a call that does not return gets beyond the limit."""
+LONGEST_s: Final = 1e8
+"""Three years; clocks of systems end somewhere beyond."""
 ASKING: Final = frozenset({"asked", "imported", "built", "_rated"})
 """Functions in which a component is called; their argument ``identity`` says which."""
 
@@ -49,7 +51,7 @@ def alarm(wall_s: float | None) -> Iterator[None]:
         yield
         return
     before = signal.signal(signal.SIGALRM, _interrupt)
-    signal.setitimer(signal.ITIMER_REAL, wall_s)
+    signal.setitimer(signal.ITIMER_REAL, min(wall_s, LONGEST_s))
     try:
         yield
     finally:

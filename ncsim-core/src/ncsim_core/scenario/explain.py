@@ -26,7 +26,7 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
     if plain_fit(schema)(document):
         # Of what fits plainly, only free-form options could still hide an infinite number.
         config = document["scenario"].get("config")
-        return [*_number_problems(config, CONFIG), *component_problems(config, registry)]
+        return [*number_problems(config, CONFIG), *component_problems(config, registry)]
     problems: dict[tuple[Path, str], Problem] = {}
     findings = list(islice(_flat(_findings(document, schema)), MAX_FINDINGS))
     for error in _without_types_of_choices(findings):
@@ -36,14 +36,14 @@ def schema_problems(document: Data, registry: Registry) -> list[Problem]:
         message = f"there may be more faults; only the first {MAX_FINDINGS} were looked at"
         problems[(), message] = Problem((), message)
     told = {path for path, _ in problems}
-    others = [*_number_problems(document), *component_problems(_config_of(document), registry)]
+    others = [*number_problems(document), *component_problems(_config_of(document), registry)]
     return [
         *_without_echoes(list(problems.values())),
         *(each for each in others if each.path not in told),
     ]
 
 
-def _number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:
+def number_problems(document: Data, root: Path = ()) -> Iterator[Problem]:
     """Yield every number that is infinite or not a number; JSON Schema lets them pass."""
     waiting: list[tuple[Path, Data]] = [(root, document)]
     while waiting:

@@ -7,7 +7,7 @@ from ncsim_core.errors import NcsimError
 from ncsim_core.generators.catalogue import DAG_PROPERTIES, DAGS, NETWORK_PROPERTIES, NETWORKS
 from ncsim_core.registry import Registry
 from ncsim_core.scenario.assembly import assemble
-from ncsim_core.scenario.explain import schema_problems
+from ncsim_core.scenario.explain import number_problems, schema_problems
 from ncsim_core.scenario.faults import Path, Problem, shown
 from ncsim_core.scenario.overrides import with_overrides
 from ncsim_core.scenario.published_form import Translation, translated_config
@@ -26,7 +26,7 @@ MAX_TRIED = 100
 def frame_problems(document: Mapping[str, Any], registry: Registry) -> list[Problem]:
     """Return in what a sweep departs from its schema, scenario parts aside."""
     del registry
-    return list(_departures(structure(), document))
+    return list(_departures(structure(), document)) or list(number_problems(document))
 
 
 def value_problems(plan: SweepPlan, registry: Registry) -> Iterator[Problem]:

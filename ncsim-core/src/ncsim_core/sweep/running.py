@@ -40,6 +40,10 @@ class SweepOptions:
     shard: tuple[int, int] | None = None
     retry_failed: bool = False
 
+    def __post_init__(self) -> None:
+        if self.shard is not None and not 1 <= self.shard[0] <= self.shard[1]:
+            raise ScenarioError(f"shard {self.shard[0]}/{self.shard[1]}: give i/n, 1 <= i <= n")
+
 
 class SweepResults:
     """The runs of a sweep: iterate to carry it out, then ask for the table.
@@ -51,10 +55,6 @@ class SweepResults:
     """
 
     def __init__(self, plan: SweepPlan, store: Store, options: SweepOptions) -> None:
-        if options.shard is not None and not 1 <= options.shard[0] <= options.shard[1]:
-            raise ScenarioError(
-                f"shard {options.shard[0]}/{options.shard[1]}: give i/n, 1 <= i <= n"
-            )
         self.plan = plan
         self.total = sum(1 for _ in plan.runs())
         self._store = store
@@ -177,6 +177,7 @@ def run_sweep(
     """
     plan = sweep if isinstance(sweep, SweepPlan) else load_sweep(sweep)
     chosen = options or SweepOptions(**changes)
+    executor_factory(chosen.executor)  # before there is a study
     store = Store(None if output is None else Path(output))
     try:
         return SweepResults(plan, store, chosen)
