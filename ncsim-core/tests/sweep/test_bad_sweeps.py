@@ -87,6 +87,11 @@ def test_the_good_one_is_good(tmp_path):
     assert len(list(loaded(tmp_path, GOOD).runs())) == 10 * (3 + 2)
 
 
+def test_a_scenario_in_place_of_a_sweep_is_told_apart(tmp_path):
+    with pytest.raises(ScenarioFaults, match=r"study\.yaml:1:1 .*ncsim run takes it"):
+        loaded(tmp_path, "scenario: {}\n")
+
+
 def test_all_faults_are_told_at_once(tmp_path):
     text = GOOD.replace("scheduler: [", "schedulr: [").replace("routing:", "ruting:")
     with pytest.raises(ScenarioFaults) as caught:

@@ -96,6 +96,9 @@ def _uncollected() -> Iterator[None]:
             gc.enable()
 
 
+A_SWEEP = "is a sweep, not a scenario; ncsim sweep takes it"
+
+
 class _Loading:
     """What a reading is asked for besides the document itself."""
 
@@ -129,6 +132,8 @@ def _loaded(document: Data, slips: list[Slip], source: Source, loading: _Loading
 
 
 def _shape_problems(document: Data, registry: Registry) -> list[Problem]:
+    if "sweep" in document and "scenario" not in document:
+        return [Problem(("sweep",), A_SWEEP, is_about_key=True)]
     return [
         *schema_problems(document, registry),
         *network_problems(document),

@@ -53,7 +53,8 @@ def config_problems(scenario: Row, config: Config, registry: Registry) -> Iterat
     dags = list(rows(scenario, ("scenario", "dags")))
     if config.components["scheduler"].name == "manual":
         yield from _unpinned(dags)
-    if config.components["dag_source"].name == "single" and len(dags) != 1:
+    is_given = isinstance(scenario["scenario"].get("dags"), list)
+    if is_given and config.components["dag_source"].name == "single" and len(dags) != 1:
         path = ("scenario", "config", KINDS["dag_source"].config_key)
         message = f"dag_source single needs exactly one DAG, the scenario has {len(dags)}"
         yield Problem(path, message, suggestion="multi")

@@ -19,6 +19,7 @@ from ncsim_core.sweep.schema import generator_schema, structure
 
 CONFIG: Path = ("scenario", "config")
 BASE: Path = ("sweep", "base")
+A_SCENARIO = "is a scenario, not a sweep; ncsim run takes it"
 MAX_TRIED = 100
 """Values per axis that are put into a scenario before anything runs."""
 
@@ -26,6 +27,8 @@ MAX_TRIED = 100
 def frame_problems(document: Mapping[str, Any], registry: Registry) -> list[Problem]:
     """Return in what a sweep departs from its schema, scenario parts aside."""
     del registry
+    if "scenario" in document and "sweep" not in document:
+        return [Problem(("scenario",), A_SCENARIO, is_about_key=True)]
     return list(_departures(structure(), document)) or list(number_problems(document))
 
 
