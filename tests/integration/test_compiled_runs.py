@@ -15,6 +15,7 @@ from ncsim_core.engine.looping import may_compile
 from ncsim_core.engine.observer import Observer
 from ncsim_core.generators.dags import Form, dag_of
 from ncsim_core.generators.paper import paper_grid
+from ncsim_core.memory import limited_memory
 from ncsim_core.scenario.making import make_scenario
 from ncsim_core.trace.writer import TraceWriter
 from ncsim_core.units import HORIZON_us
@@ -98,6 +99,16 @@ def test_long_runs_are_compiled_unless_that_is_switched_off(
     monkeypatch.setattr(looping, "WORTH_COMPILING_us", worth_us)
 
     assert is_compiled(prepare(scenario_of(3, [(0, 1)], {}))) is expected
+
+
+@needs_numba
+def test_numba_is_not_started_where_memory_is_limited(monkeypatch, numba_is_unused):
+    monkeypatch.setattr(looping, "WORTH_COMPILING_us", 0)
+    run = prepare(scenario_of(3, [(0, 1)], {}))
+
+    with limited_memory(1000.0):
+        assert not is_compiled(run)
+    assert is_compiled(run)
 
 
 @needs_numba

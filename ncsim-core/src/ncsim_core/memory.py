@@ -4,12 +4,22 @@ import contextlib
 import importlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from ncsim_core.errors import ScenarioError
 
 BYTES_PER_MB: Final = 1_000_000
 MOST_BYTES: Final = 1 << 62
+
+
+def is_memory_limited() -> bool:
+    """Return whether allocations of this process fail from some size on."""
+    try:
+        resource = importlib.import_module("resource")
+    except ImportError:
+        return False
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return bool(limit != resource.RLIM_INFINITY)
 
 
 @contextlib.contextmanager
@@ -26,7 +36,7 @@ def limited_memory(memory_MB: float | None) -> Iterator[None]:
         yield
         return
     try:
-        resource: Any = importlib.import_module("resource")
+        resource = importlib.import_module("resource")
         pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
     except (ImportError, OSError):
         raise ScenarioError("a limit on memory needs Linux") from None

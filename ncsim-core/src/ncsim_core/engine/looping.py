@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 from ncsim_core.engine.sessions.choice import loads_of
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State
+from ncsim_core.memory import is_memory_limited
 from ncsim_core.units import Instant
 
 if TYPE_CHECKING:
@@ -59,18 +60,32 @@ def is_possible(state: State, setup: Setup) -> bool:
 
 
 def is_worth_compiling(setup: Setup) -> bool:
-    """Return whether a run of this length, after those so far, should be compiled."""
+    """Return whether a run of this length, after those so far, should be compiled.
+
+    None is where memory is limited: what numba needs, some 500 MB, is not the run's.
+    """
     global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
-    if not may_compile():
+    if not may_compile() or is_memory_limited():
         return False
     saved_us = SAVED_us if setup.models.interference.tables() is None else SAVED_WITH_RADIO_us
     _saved_so_far_us += saved_us * 2 * len(setup.dependencies)
-    return "numba" in sys.modules or _saved_so_far_us >= WORTH_COMPILING_us
+    is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_COMPILING_us
+    return is_worth and _numba_starts()
 
 
 def may_compile() -> bool:
     """Return whether numba is installed and ``NCSIM_PURE=1`` does not forbid it."""
     return os.environ.get("NCSIM_PURE", "") != "1" and _has_numba()
+
+
+@cache
+def _numba_starts() -> bool:
+    """Return whether numba can be imported, beside the numpy that is there, and compiles."""
+    try:
+        import numba
+    except (ImportError, OSError):
+        return False
+    return not getattr(numba.config, "DISABLE_JIT", False)
 
 
 @cache
