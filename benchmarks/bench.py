@@ -38,7 +38,7 @@ class Line:
         pattern: Finds the number in what the script prints.
         target: What the number should not pass; ``None`` where there is no target.
         unit: Of both.
-        is_pure: Whether compiled kernels are switched off.
+        is_pure: Whether compiled loops are switched off.
         is_long: Whether it takes minutes.
     """
 
@@ -76,15 +76,17 @@ def _engine_lines() -> Iterator[Line]:
     for when in ("first", "again"):
         name = f"run: the paper's 108 grid runs with scheduling, {when}"
         yield Line(name, ("engine.py", "paper_runs"), rf"{when}: ([\d.]+) s", 0.25)
-    for form in ("none", "pure", "fast") if importlib.util.find_spec("numba") else ("none", "pure"):
-        model = {"none": "none", "pure": "csma_bianchi", "fast": "csma_bianchi, kernels"}[form]
+    models = {"none": "none", "pure": "csma_bianchi"}
+    if importlib.util.find_spec("numba"):
+        models |= {"loop": "none, compiled", "fast": "csma_bianchi, compiled"}
+    for form, model in models.items():
         for size, tasks in SIZES:
             yield Line(
                 f"run: {model}, {size}x{size} x {tasks:,}",
                 ("engine.py", "one", form, str(size), str(tasks)),
                 r"tasks\s+([\d.]+) s",
                 TARGETS_s.get((form, size, tasks)),
-                is_pure=form != "fast",
+                is_pure=form in ("none", "pure"),
             )
     for model in ("none", "csma_bianchi"):
         command = ("engine.py", "trace_share", "20", "1000", model)

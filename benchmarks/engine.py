@@ -3,7 +3,7 @@
     python benchmarks/engine.py [table|runs|scale|trace]
 
 CPU seconds of a run, setup and routes included, loading and assembling not; medians of five. Every
-line is measured in a process of its own, pure or with compiled kernels.
+line is measured in a process of its own, in Python or in the compiled loop.
 """
 
 import os
@@ -38,6 +38,10 @@ TARGETS_s = {
 }
 """By form (``none`` or csma_bianchi ``pure`` and ``fast``), size of the grid and tasks."""
 
+FORMS = ("none", "pure", "loop", "fast")
+"""Without a radio and with one, in Python; the same two in the compiled loop."""
+COMPILED = ("loop", "fast")
+
 WIDTH = 32  # tasks per layer where length alone should count
 EVENTS = (10_000, 100_000, 1_000_000)
 EVENTS_PER_TASK = 6.7
@@ -58,9 +62,9 @@ def median_s(assembly: Assembly) -> float:
 
 def one(form: str, size: int, tasks: int) -> None:
     """Print one line of the table."""
-    if form == "fast":
+    if form in COMPILED:
         import numba  # noqa: F401 - loaded already means worth using
-    interference = "none" if form == "none" else "csma_bianchi"
+    interference = "none" if form in ("none", "loop") else "csma_bianchi"
     took_s = median_s(assemble(layered_scenario(size, tasks, interference)))
     target_s = TARGETS_s.get((form, size, tasks))
     judged = "" if target_s is None else f"   target {target_s:g} s"
@@ -90,11 +94,15 @@ def paper_runs() -> None:
         print(f"{len(scenarios)} runs, {when}: {time.process_time() - began_s:.3f} s", flush=True)
 
 
-def long_run(events: int) -> None:
+def long_run(events: int, form: str = "none") -> None:
     """Print what a run of some length costs, its trace streamed to a file."""
+    if form in COMPILED:
+        import numba  # noqa: F401
     dag = layered_dag(round(events / EVENTS_PER_TASK), WIDTH)
     config = {"scheduler": "round_robin", "routing": "minimum_hop", "interference": "none"}
     assembly = assemble(make_scenario("long", wired_grid(5), [dag], config))
+    if form in COMPILED:
+        cpu_s(assembly)  # loads the loop
     built_MB = _peak_MB()
     plain_s = cpu_s(assembly)
     with tempfile.TemporaryDirectory() as folder:
@@ -102,7 +110,7 @@ def long_run(events: int) -> None:
         traced_s = cpu_s(assembly, lambda: [TraceWriter(path)])
         size_MB = path.stat().st_size / 1e6
     print(
-        f"{events:8} events {plain_s:7.2f} s, {1e6 * plain_s / events:5.1f} us each; with trace "
+        f"{form:5} {events:8} events {plain_s:7.2f} s, {1e6 * plain_s / events:5.1f} us each; with trace "
         f"{traced_s:6.2f} s, {size_MB:6.1f} MB; peak {built_MB:4.0f} MB built, "
         f"{_peak_MB():4.0f} MB run",
         flush=True,
@@ -131,9 +139,9 @@ def _peak_MB() -> float:
 
 def table() -> None:
     """Measure all sizes and forms."""
-    for form in ("none", "pure", "fast"):
+    for form in FORMS:
         for size, tasks in SIZES:
-            _in_new_process("one", form, size, tasks, is_pure=form != "fast")
+            _in_new_process("one", form, size, tasks, is_pure=form not in COMPILED)
 
 
 def runs() -> None:
@@ -143,8 +151,9 @@ def runs() -> None:
 
 def scale() -> None:
     """Measure how cost grows with length."""
-    for events in EVENTS:
-        _in_new_process("long_run", events, is_pure=True)
+    for form in ("none", "loop"):
+        for events in EVENTS:
+            _in_new_process("long_run", events, form, is_pure=form not in COMPILED)
 
 
 def trace() -> None:

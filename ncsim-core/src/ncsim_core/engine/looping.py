@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ncsim_core.engine.compiled.compiled_run import CompiledRun
 
 SAVED_us: Final = 8
-SAVED_WITH_RADIO_us: Final = 25
+SAVED_WITH_RADIO_us: Final = 30
 """What the loop saves at a start or finish of a transfer, about."""
 
 WORTH_COMPILING_us: Final = 2_000_000
@@ -62,7 +62,7 @@ def is_possible(state: State, setup: Setup) -> bool:
 def is_worth_compiling(setup: Setup) -> bool:
     """Return whether a run of this length, after those so far, should be compiled.
 
-    None is where memory is limited: what numba needs, some 500 MB, is not the run's.
+    None is where memory is limited: what numba needs, some 370 MB, is not the run's.
     """
     global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
     if not may_compile() or is_memory_limited():
