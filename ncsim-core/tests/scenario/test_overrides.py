@@ -70,6 +70,7 @@ def test_without_interference_the_radio_keeps_its_rates(with_antenna: Registry):
         ),
         ({"interference": 5}, "override interference=5  config.interference: must be the name"),
         ({"fog.depth.m": 2}, "override fog.depth.m=2  config.fog: unknown key 'fog'; known"),
+        ({"seed.x": 2}, "override seed.x=2  config.seed: must be a whole number, not a mapping"),
         ({"interference": "fog"}, "override interference='fog'  config.interference: unknown"),
     ],
 )

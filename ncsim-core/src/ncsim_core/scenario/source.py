@@ -123,6 +123,10 @@ def read_document(source: Source) -> tuple[Any, list[Slip]]:
     return document, slips
 
 
+OVERRIDABLE = 2
+"""Steps from the root to what overrides change: ``scenario.config``."""
+
+
 @dataclass(frozen=True)
 class Origins:
     """Where the parts of a checked document came from.
@@ -135,13 +139,13 @@ class Origins:
     moved: Mapping[Path, Path] = field(default_factory=dict)
     overrides: Mapping[Path, str] = field(default_factory=dict)
 
-    def override_of(self, path: Path, *, is_about_key: bool = False) -> str | None:
-        """Return the override that ``path`` lies in, or whose own path goes through a key."""
+    def override_of(self, path: Path) -> str | None:
+        """Return the override that ``path`` lies in, or that has changed what lies below it."""
         for end in range(len(path), 0, -1):
             if path[:end] in self.overrides:
                 return self.overrides[path[:end]]
         beyond = (text for at, text in self.overrides.items() if at[: len(path)] == path)
-        return next(beyond, None) if is_about_key else None
+        return next(beyond, None) if len(path) > OVERRIDABLE else None
 
     def source_path(self, path: Path) -> Path:
         """Return where in the source ``path`` was taken from."""
@@ -165,7 +169,7 @@ def located(
 
 
 def _fault(problem: Problem, source: Source, positions: Positions, origins: Origins) -> Fault:
-    override = origins.override_of(problem.path, is_about_key=problem.is_about_key)
+    override = origins.override_of(problem.path)
     path = origins.source_path(problem.path)
     if override is not None:
         source, span = Source(f"override {override}"), None
