@@ -107,7 +107,7 @@ class CliqueBelief:
             downward = np.log1p(total - odds)
             heard = np.bincount(self.station, downward)[self.station] - downward
             fresh = alone * np.exp(-heard)
-            moved = np.abs(fresh - odds).max()
+            moved = np.maximum.reduce(np.abs(fresh - odds))
             odds = DAMPING * odds + (1.0 - DAMPING) * fresh
             if moved < ACCURACY:
                 break

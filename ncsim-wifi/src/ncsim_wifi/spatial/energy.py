@@ -11,9 +11,10 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
 from ncsim_wifi.spatial.relations import Hostile, subsets_of
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.sums import halving_sums
+from ncsim_wifi.spatial.sums import halved, halving_sums
 
 TINY = 1e-12
+KINDS = 4  # of subsets that a gate compares
 
 
 @dataclass(frozen=True)
@@ -73,14 +74,14 @@ class GateMasks(NamedTuple):
     Args:
         relation: The relations.
         row: The energy set of the station that is silenced.
-        subsets: 1 for subsets with the other party of the relation, and no other hostile station,
-            that leave the channel free; for all of these; for subsets to compare with that leave
-            it free; for all of these; shape (4, relations, subsets).
+        subsets: Whether it is one with the other party of the relation, and no other hostile station,
+            that leaves the channel free; one of all these; one to compare with that leaves it
+            free; one of all these; shape (relations, subsets, 4).
     """
 
     relation: IntArray
     row: IntArray
-    subsets: FloatArray
+    subsets: BoolArray
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
@@ -103,7 +104,7 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
     free = ~sets.blocks[row[relation]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
-    masks = np.array([with_it & free, with_it, without & free, without], np.float64)
+    masks = np.stack([with_it & free, with_it, without & free, without], axis=2)
     return GateMasks(relation, row[relation], masks)
 
 
@@ -176,7 +177,8 @@ def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """
     result = np.ones(count)
     weight = weights[masks.row]
-    sums = halving_sums(masks.subsets * weight)
+    terms = (masks.subsets * weight[:, :, None]).reshape(len(weight), KINDS * weight.shape[1])
+    sums = halved(terms, KINDS).T
     with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
     result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

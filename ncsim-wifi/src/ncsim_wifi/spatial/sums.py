@@ -15,10 +15,15 @@ def row_sums(values: FloatArray) -> FloatArray:
 
 def halving_sums(values: FloatArray) -> FloatArray:
     """Return the sums along the last axis, of a power of two of terms: first plus second half."""
-    while values.shape[-1] > 1:
+    return halved(values, 1)[..., 0]
+
+
+def halved(values: FloatArray, width: int) -> FloatArray:
+    """Return the last axis folded to a width, again and again first plus second half."""
+    while values.shape[-1] > width:
         half = values.shape[-1] // 2
         values = values[..., :half] + values[..., half:]
-    return values[..., 0]
+    return values
 
 
 def row_products(values: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.compiled.compiling import halving_sum, inlined
-from ncsim_wifi.spatial.energy import TINY, GateMasks, Silenced, Silencing
+from ncsim_wifi.spatial.energy import KINDS, TINY, GateMasks, Silenced, Silencing
 
 
 @inlined
@@ -45,13 +45,19 @@ def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArra
 def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation."""
     result = np.ones(count)
-    sums, terms = np.empty(4), np.empty(weight.shape[1])
+    terms = np.empty((weight.shape[1], KINDS))
     for at in range(len(masks.relation)):
         row = masks.row[at]
-        for kind in range(4):
-            for held in range(len(terms)):
-                terms[held] = masks.subsets[kind, at, held] * weight[row, held]
-            sums[kind] = halving_sum(terms)
-        with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
+        for held in range(len(terms)):
+            for kind in range(KINDS):
+                terms[held, kind] = weight[row, held] if masks.subsets[at, held, kind] else 0.0
+        half = len(terms) // 2
+        while half:
+            for held in range(half):
+                for kind in range(KINDS):
+                    terms[held, kind] += terms[half + held, kind]
+            half //= 2
+        with_it = terms[0, 0] / (terms[0, 1] + TINY)
+        without = terms[0, 2] / (terms[0, 3] + TINY)
         result[masks.relation[at]] = min(1.0, with_it / max(without, TINY))
     return result
