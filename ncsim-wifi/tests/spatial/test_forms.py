@@ -72,3 +72,13 @@ def test_numba_is_not_started_for_little_work():
     )
 
     subprocess.run([sys.executable, "-c", code], check=True, env={})
+
+
+def test_arrays_are_used_where_numba_cannot_be_imported(tmp_path):
+    (tmp_path / "numba.py").write_text("raise ImportError('needs another numpy')\n")
+    code = (
+        "from ncsim_wifi.spatial.forms import ARRAYS, forms_for\n"
+        "assert forms_for(10**9, 9) is ARRAYS\n"
+    )
+
+    subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": str(tmp_path)})

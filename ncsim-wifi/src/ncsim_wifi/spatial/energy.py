@@ -74,9 +74,9 @@ class GateMasks(NamedTuple):
     Args:
         relation: The relations.
         row: The energy set of the station that is silenced.
-        subsets: Whether it is one with the other party of the relation, and no other hostile station,
-            that leaves the channel free; one of all these; one to compare with that leaves it
-            free; one of all these; shape (relations, subsets, 4).
+        subsets: Whether it is one with the other party of the relation, and without other
+            hostile stations, that leaves the channel free; one of all these; one to compare with
+            that leaves it free; one of all these; shape (relations, subsets, 4).
     """
 
     relation: IntArray

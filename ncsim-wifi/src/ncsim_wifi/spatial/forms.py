@@ -12,6 +12,8 @@ from functools import cache
 from importlib.util import find_spec
 from typing import Final, NamedTuple
 
+from ncsim_core.memory import is_memory_limited
+
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial import attempts, chains, energy, gaps, occupancy, overlap
 
@@ -59,18 +61,29 @@ def forms_for(steps: int, links: int) -> Forms:
     Args:
         steps: Steps of a fixed point that are about to be made.
         links: Its number of links.
+
+    Returns:
+        Arrays where memory is limited: what numba needs, some 500 MB, is not the run's.
     """
     global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
-    if not may_compile():
+    if not may_compile() or is_memory_limited():
         return ARRAYS
     _saved_so_far_us += SAVED_us * steps * links
     is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_LOOPS_us
-    return compiled_loops() if is_worth else ARRAYS
+    return compiled_loops() if is_worth and _numba_starts() else ARRAYS
 
 
 def may_compile() -> bool:
     """Return whether numba is installed and ``NCSIM_PURE=1`` does not forbid it."""
     return os.environ.get("NCSIM_PURE", "") != "1" and _has_numba()
+
+
+@cache
+def _numba_starts() -> bool:
+    """Return whether numba can be imported, beside the numpy that is there, and compiles."""
+    from ncsim_wifi.spatial.compiled.compiling import NUMBA
+
+    return NUMBA is not None
 
 
 @cache

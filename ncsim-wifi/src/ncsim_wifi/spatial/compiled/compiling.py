@@ -12,7 +12,7 @@ F = TypeVar("F", bound=Callable[..., object])
 def _numba() -> ModuleType | None:
     try:
         import numba
-    except ImportError:
+    except (ImportError, OSError):
         return None
     module: ModuleType = numba
     return None if module.config.DISABLE_JIT else module  # those set it who look for a fault
