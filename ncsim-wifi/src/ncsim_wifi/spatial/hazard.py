@@ -68,10 +68,11 @@ def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
         scheme: Row of the table; broadcasts against ``ratio_dB``.
         ratio_dB: Signal to interference and noise.
     """
-    at = (np.clip(ratio_dB, GRID_FROM_dB, GRID_TO_dB) - GRID_FROM_dB) * GRID_STEPS_PER_dB
+    within_dB = np.minimum(np.maximum(ratio_dB, GRID_FROM_dB), GRID_TO_dB)
+    at = (within_dB - GRID_FROM_dB) * GRID_STEPS_PER_dB
     below = at.astype(np.int64)
-    part = at - below
     grid = _grid()
-    ln_hazard = grid[scheme, below]
-    ln_hazard += part * (grid[scheme, below + 1] - ln_hazard)
+    place = scheme * grid.shape[1] + below
+    ln_hazard = grid.take(place)
+    ln_hazard += (at - below) * (grid.take(place + 1) - ln_hazard)
     return np.asarray(np.exp(ln_hazard))

@@ -163,7 +163,9 @@ def grouped(
     """Return link, place and group of the kept relations: each group excludes itself on air."""
     rows, columns = np.nonzero(kept)
     stations = station[rows, columns].tolist()
-    heard = {each: frozenset(np.flatnonzero(senses[each]).tolist()) for each in set(stations)}
+    heard: list[set[int]] = [set() for _ in senses]
+    for one, other in zip(*(ends.tolist() for ends in np.nonzero(senses)), strict=True):
+        heard[one].add(other)
     cliques: dict[int, list[tuple[set[int], list[int]]]] = {}  # by link: stations, places above
     for at, (link, each) in enumerate(zip(rows.tolist(), stations, strict=True)):
         of_link = cliques.setdefault(link, [])
