@@ -12,6 +12,7 @@ from ncsim_wifi.spatial.occupancy import (
     occupancy_of,
     set_table,
 )
+from ncsim_wifi.spatial.overlap import joint_kill
 from ncsim_wifi.spatial.relay import maximal_cliques
 
 
@@ -76,6 +77,28 @@ def test_power_sums_are_sums(base):
 
     for power, value in enumerate(sums):
         assert value == pytest.approx((n**power * base**n).sum(), rel=1e-7)
+
+
+def test_joint_kill_is_the_mean_over_all_sets_of_helpers():
+    rng = np.random.default_rng(2)
+    kill, omega = rng.uniform(0.0, 1.0, (2, 3, 1, 16))
+    present = rng.uniform(0.0, 1.0, (3, 7, 4))
+
+    found = joint_kill(kill, omega, present)
+
+    for relation, stage in np.ndindex(3, 7):
+        weights = [
+            omega[relation, 0, held]
+            * np.prod(
+                [
+                    x if held >> helper & 1 else 1.0 - x
+                    for helper, x in enumerate(present[relation, stage])
+                ]
+            )
+            for held in range(16)
+        ]
+        expected = np.dot(weights, kill[relation, 0]) / sum(weights)
+        assert found[relation, stage] == pytest.approx(expected)
 
 
 def test_hazard_meets_every_point_of_the_table():

@@ -8,8 +8,10 @@ from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import read_table
 from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.scene import scene_of
 from ncsim_wifi.spatial.settings import Settings, Terms
 from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
+from ncsim_wifi.spatial.statics import statics_of
 
 SCHEME = 5
 RATE_Mbps = read_table("ax").rate_Mbps[SCHEME]
@@ -83,6 +85,38 @@ def test_a_clique_shares_like_bianchi(count):
 
     bianchi_MBps = station_goodput_MBps(count, RATE_Mbps, AxTiming())
     assert shares_MBps == pytest.approx(np.full(count, bianchi_MBps), rel=0.03)
+
+
+def test_who_two_harm_only_together_gets_stuck_as_in_packets():
+    outer_MBps, inner_MBps = 2.16, 0.55  # ns-3.44: n4_100m of four_five_links.json
+
+    outer, inner = saturated_goodputs_MBps(parallel(4, 100.0), range(4))[:2]
+    alike = parallel(4, 100.0, terms=Terms(helpers_by_stage=False))
+
+    assert outer == pytest.approx(outer_MBps, rel=0.02)
+    assert inner == pytest.approx(inner_MBps, rel=0.15)
+    assert saturated_goodputs_MBps(alike, range(4))[1] < inner
+
+
+def test_rts_that_collide_with_each_other_harm_no_data():
+    senders_m, receivers_m = [(0, 0), (148, 0), (148, 10)], [(30, 0), (163, 0), (163, 10)]
+
+    def partners(*, rts_cts):
+        scene = scene_of(plant(senders_m, receivers_m, rts_cts=rts_cts), range(3))
+        return statics_of(scene).hostile.has_partners
+
+    assert partners(rts_cts=False)
+    assert not partners(rts_cts=True)
+
+
+def test_an_rts_that_is_captured_does_not_mind_a_later_start():
+    def fatal_us(receiver_m):
+        scene = scene_of(plant([(0, 0), (95, 0)], [receiver_m, (110, 0)], rts_cts=True), range(2))
+        statics = statics_of(scene)
+        return dict(zip(statics.hostile.link.tolist(), statics.noticed_us.tolist(), strict=True))
+
+    assert fatal_us((30.0, 0.0))[0] == 0.0
+    assert fatal_us((50.0, 0.0))[0] > 0.0
 
 
 def test_hidden_pair_gets_what_joint_chains_give_and_not_what_independence_gives():

@@ -33,6 +33,7 @@ class SideRates(NamedTuple):
         share: phi_b, that the other side is the one that overlaps.
         other: o(a), what else a frame has to survive.
         cycle_us: Mean time between attempts in stage a.
+        grows: By what loss grows with stage a, relative to its mean.
     """
 
     survives: FloatArray
@@ -40,6 +41,7 @@ class SideRates(NamedTuple):
     share: FloatArray
     other: FloatArray
     cycle_us: FloatArray
+    grows: FloatArray
 
 
 class ChainRates(NamedTuple):
@@ -66,7 +68,9 @@ def chain_rates(one: SideRates, two: SideRates) -> ChainRates:
     Source: MODEL 3.10.
     """
     rate_a, rate_b = 1.0 / one.cycle_us[:, :, None], 1.0 / two.cycle_us[:, None, :]
-    survives_a, survives_b = one.survives[:, None, :], two.survives[:, :, None]
+    survives_a = 1.0 - one.grows[:, :, None] * (1.0 - one.survives[:, None, :])
+    survives_b = 1.0 - two.grows[:, None, :] * (1.0 - two.survives[:, :, None])
+    survives_a, survives_b = np.maximum(0.0, survives_a), np.maximum(0.0, survives_b)
     hit_a = np.maximum(one.hit[:, None, :], 1e-12)
     hit_b = np.maximum(two.hit[:, :, None], 1e-12)
     success_a = survives_a * one.other[:, :, None] * rate_a

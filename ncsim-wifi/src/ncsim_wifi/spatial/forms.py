@@ -34,7 +34,9 @@ class Forms(NamedTuple):
     joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
     silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
     exact_occupancy: Callable[[occupancy.SetTable, FloatArray], occupancy.Occupancy]
-    helped_kill: Callable[[overlap.Helped, FloatArray, FloatArray, FloatArray], FloatArray]
+    helped_kill: Callable[
+        [overlap.Helped, FloatArray, FloatArray, FloatArray, FloatArray], FloatArray
+    ]
 
 
 ARRAYS: Final = Forms(

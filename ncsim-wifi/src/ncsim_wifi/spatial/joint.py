@@ -4,6 +4,7 @@ Source: MODEL 3.9 and 3.10.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,26 @@ from ncsim_wifi.spatial.chains import SideRates
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.sums import row_sums
+
+
+class RelationRates(NamedTuple):
+    """What relations do to links, by the interferer's stage: s_b, hit_b and phi_b.
+
+    Args:
+        survives: s_b, shape (relations, 7).
+        hit: Probability that a frame is overlapped.
+        share: phi_b, that the interferer is the one of its group that overlaps.
+        grows: By what loss grows with the sender's own stage, relative to its mean.
+    """
+
+    survives: FloatArray
+    hit: FloatArray
+    share: FloatArray
+    grows: FloatArray
+
+
+RawSides = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""s, hit, phi, o and growth of each side of the chains."""
 
 
 class JointStages:
@@ -37,7 +58,6 @@ class JointStages:
         self.side: IntArray = side_of[own, hostile.station]
         self._station = np.concatenate([one, two])
         self._relations = np.flatnonzero(self.side >= 0)
-        self._joint: FloatArray | None = None
         self._given: FloatArray | None = None
 
     def expected(self, alone: FloatArray, by_stage: FloatArray) -> FloatArray:
@@ -59,17 +79,17 @@ class JointStages:
         attempts: FloatArray,
         total: FloatArray,
         own_part: FloatArray,
-        relation: tuple[FloatArray, FloatArray, FloatArray],
+        relation: RelationRates,
         cycle_us: FloatArray,
         joint_stages: Callable[[SideRates, SideRates], FloatArray],
     ) -> None:
-        """Solve the chains anew and move towards the solution.
+        """Solve the chains anew.
 
         Args:
             attempts: a_l, the share of each link in the attempts of its station.
             total: tot_l(a), success of each link by stage.
             own_part: sbar_r(a), what of it is due to each relation.
-            relation: s_b, hit_b and phi_b of each relation.
+            relation: What each relation does.
             cycle_us: cyc_u(k) of each station.
             joint_stages: Solves the chains.
         """
@@ -79,10 +99,8 @@ class JointStages:
         half = self.count
         cycles_us = cycle_us[self._station]
         one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
-        fresh = joint_stages(one, two)
-        gain = self._scene.settings.approximations.stage_gain
-        self._joint = fresh if self._joint is None else gain * fresh + (1.0 - gain) * self._joint
-        both = np.concatenate([self._joint, self._joint.transpose(0, 2, 1)])
+        joint = joint_stages(one, two)
+        both = np.concatenate([joint, joint.transpose(0, 2, 1)])
         both /= np.maximum(np.add.reduce(both, axis=2, keepdims=True), 1e-300)
         self._given = both[self.side[self._relations]]
 
@@ -91,29 +109,28 @@ class JointStages:
         attempts: FloatArray,
         total: FloatArray,
         own_part: FloatArray,
-        relation: tuple[FloatArray, FloatArray, FloatArray],
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return s, hit, phi and o of each side; links that are not hurt contribute s = 1."""
+        relation: RelationRates,
+    ) -> RawSides:
+        """Return the sides of the chains; links that are not hurt contribute s = 1."""
         at = self._relations
         side, link = self.side[at], self._hostile.link[at]
         weight = attempts[link][:, None]
-        survives_r, hit_r, share_r = (each[at] for each in relation)
+        survives_r, hit_r, share_r, grows_r = (each[at] for each in relation)
         shape = (2 * self.count, STAGES)
-        survives, hit, share = np.ones(shape), np.zeros(shape), np.zeros(shape)
+        survives, hit, share, grows = np.ones(shape), *np.zeros((3, *shape))
         hurt = np.zeros((2 * self.count, 1))
         np.add.at(hurt, side, weight)
         np.add.at(survives, side, weight * (survives_r - 1.0))
         np.add.at(hit, side, weight * hit_r)
         np.add.at(share, side, weight * share_r)
+        np.add.at(grows, side, weight * grows_r)
         per_station = (self._scene.link_of_station * attempts) @ total
         other = per_station[self._station]
         rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
         np.add.at(other, side, weight * (rest - total[link]))
-        return survives, hit, share / hurt, np.clip(other, 0.0, 1.0)
+        return survives, hit, share / hurt, np.clip(other, 0.0, 1.0), grows / hurt
 
 
-def _side(
-    sides: tuple[FloatArray, FloatArray, FloatArray, FloatArray], cycles_us: FloatArray, part: slice
-) -> SideRates:
-    survives, hit, share, other = (each[part] for each in sides)
-    return SideRates(survives, hit, share, other, cycles_us[part])
+def _side(sides: RawSides, cycles_us: FloatArray, part: slice) -> SideRates:
+    survives, hit, share, other, grows = (each[part] for each in sides)
+    return SideRates(survives, hit, share, other, cycles_us[part], grows)

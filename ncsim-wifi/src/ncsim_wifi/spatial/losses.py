@@ -10,9 +10,10 @@ import numpy as np
 from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.attempts import Exchange
+from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.forms import Forms
 from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, windows_of
-from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, CTS_NOTICED_us, NAV_TIMEOUT_us
+from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
     LARGEST_ON,
@@ -21,6 +22,7 @@ from ncsim_wifi.spatial.overlap import (
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics
+from ncsim_wifi.spatial.sums import row_sums
 
 
 class Traffic(NamedTuple):
@@ -38,6 +40,7 @@ class Traffic(NamedTuple):
         attempts: a_l.
         answered: Part of the RTS of each station that are answered.
         sending: How likely w is sending, not only keeping u silent, while u may count.
+        link_stages: q_l(k), share of attempts of each link in each stage.
     """
 
     on: FloatArray
@@ -51,6 +54,7 @@ class Traffic(NamedTuple):
     attempts: FloatArray
     answered: FloatArray
     sending: FloatArray
+    link_stages: FloatArray
 
 
 class HiddenLoss(NamedTuple):
@@ -65,6 +69,7 @@ class HiddenLoss(NamedTuple):
         phi: phi_j, share of the interferer in its group.
         alone: Time-weighted stages of the interferer, shape (relations, 7).
         correction: Factor of each link for what else is conditioned on.
+        grows: By what loss grows with the sender's own stage, shape (relations, 7).
     """
 
     survives: FloatArray
@@ -75,19 +80,62 @@ class HiddenLoss(NamedTuple):
     phi: FloatArray
     alone: FloatArray
     correction: FloatArray
+    grows: FloatArray
 
 
-def effective_hazard(statics: Statics, traffic: Traffic, forms: Forms) -> FloatArray:
-    """Return h_r of each relation (MODEL 3.7)."""
+def effective_hazard(
+    statics: Statics, traffic: Traffic, eager: FloatArray | None, forms: Forms
+) -> tuple[FloatArray, FloatArray]:
+    """Return h_r of each relation, and how loss grows with the sender's stage (MODEL 3.7).
+
+    Args:
+        statics: Relations.
+        traffic: What stations do.
+        eager: How much more often than on average the interferer of each relation attempts while
+            the sender is in a stage, shape (relations, 7), if known.
+        forms: The functions to use.
+    """
     hostile, times = statics.hostile, traffic.times
-    half = statics.alone_half_kill.copy()
+    half, grows = statics.alone_half_kill.copy(), np.ones((len(hostile), STAGES))
     some = hostile.with_helpers
     if len(some):
-        half[some] = forms.helped_kill(statics.helped, traffic.on, times.on_air_us, times.busy_us)
+        by_stage = forms.helped_kill(
+            statics.helped,
+            traffic.on,
+            times.on_air_us,
+            times.busy_us,
+            _of_helpers(statics.helper_relation, eager),
+        )
+        shares = traffic.link_stages[hostile.link[some]] if eager is not None else 1.0
+        half[some] = row_sums(shares * by_stage)
+        grows[some] = _whole(by_stage) / np.maximum(_whole(half[some]), 1e-9)[:, None]
         half = np.where(hostile.is_strong, np.maximum(half, statics.alone_half_kill), half)
+        grows[hostile.is_strong] = 1.0
     if hostile.has_partners:
         half = half + _partners_kill(hostile, traffic)
-    return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9)
+    return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9), grows
+
+
+def _of_helpers(relation: IntArray, eager: FloatArray | None) -> FloatArray:
+    """Return how eager helpers are by stage of the sender; as always where that is not known."""
+    if eager is None:
+        return np.ones((*relation.shape, 1))
+    return np.where((relation >= 0)[:, :, None], eager[relation], 1.0)
+
+
+def _whole(half: FloatArray) -> FloatArray:
+    """Return the loss of frames overlapped as a whole from that of half overlapped ones."""
+    return np.asarray(1.0 - (1.0 - half) ** 2)
+
+
+def by_own_stage(survives: FloatArray, grows: FloatArray) -> FloatArray:
+    """Return what survives a relation in each stage of the sender.
+
+    Args:
+        survives: What would, if the relation harmed all stages alike.
+        grows: By what loss grows with the stage.
+    """
+    return np.maximum(0.0, 1.0 - grows * (1.0 - survives))
 
 
 def _partners_kill(hostile: Hostile, traffic: Traffic) -> FloatArray:
@@ -118,12 +166,13 @@ def hidden_loss(
     statics: Statics,
     traffic: Traffic,
     gates: tuple[FloatArray, FloatArray],
+    eager: FloatArray | None,
     forms: Forms,
 ) -> HiddenLoss:
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
     own, other = statics.own, hostile.station
-    hazard = effective_hazard(statics, traffic, forms)
+    hazard, grows = effective_hazard(statics, traffic, eager, forms)
     immune = np.exp(-hazard)
     kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
@@ -149,6 +198,7 @@ def hidden_loss(
         phi,
         alone,
         correction,
+        grows,
     )
 
 
@@ -176,7 +226,7 @@ def _windows(
     protected_us = scene.protected_us[hostile.link]
     left_us, borne_us = windows_of(statics.window_us, protected_us, hazard, immune)
     if scene.settings.rts_cts:
-        left_us = np.concatenate([left_us, np.full_like(left_us[:1], CTS_NOTICED_us)])
+        left_us = np.concatenate([left_us, statics.noticed_us[None]])
     return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, statics.longest_us)
 
 

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.spatial.sums import halving_sums
 
 LARGEST_KILL = 1.0 - 1e-9
 LARGEST_ON = 0.97
@@ -60,18 +59,18 @@ def joint_kill(kill: FloatArray, omega: FloatArray, present: FloatArray) -> Floa
     Source: MODEL 3.7.
 
     Args:
-        kill: Part of frames lost beyond what each set of helpers takes, shape (relations, sets);
+        kill: Part of frames lost beyond what each set of helpers takes, shape (relations, 1, sets);
             set number s holds helper i if bit i of s is set.
         omega: Weight of each set, 0 where impossible.
-        present: x_k, shape (relations, helpers), 0 where there is none.
+        present: x_k, shape (relations, stages, helpers), 0 where there is none.
     """
-    chance = np.ones((len(present), 1))
-    for helper in range(present.shape[1]):
-        there = present[:, helper, None]
-        chance = np.concatenate([chance * (1.0 - there), chance * there], axis=1)
-    weight = omega * chance
-    total = np.maximum(halving_sums(weight), 1e-300)
-    return np.asarray(np.minimum(halving_sums(weight * kill) / total, LARGEST_KILL))
+    killed, total = omega * kill, omega
+    for helper in range(present.shape[2] - 1, -1, -1):
+        there = present[:, :, helper, None]
+        away, half = 1.0 - there, total.shape[2] // 2
+        killed = killed[..., :half] * away + killed[..., half:] * there
+        total = total[..., :half] * away + total[..., half:] * there
+    return np.asarray(np.minimum(killed / np.maximum(total, 1e-300), LARGEST_KILL)[..., 0])
 
 
 class Helped(NamedTuple):
@@ -97,9 +96,9 @@ class Helped(NamedTuple):
 
 
 def helped_kill(
-    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray, eager: FloatArray
 ) -> FloatArray:
-    """Return kd of each of these relations.
+    """Return kd of each of these relations, by stage of the sender.
 
     Source: MODEL 3.7.
 
@@ -108,6 +107,8 @@ def helped_kill(
         on: A[u, w].
         on_air_us: T of each station.
         busy_us: For how long a frame of each station keeps others from counting.
+        eager: How much more often than on average helpers attempt while the sender is in a
+            stage, shape (relations, helpers, stages); one stage stands for all.
     """
     own, station, helper = helped.own, helped.station, helped.helper
     own_on = np.minimum(np.maximum(on[own, station], LEAST_ON), LARGEST_ON)
@@ -116,5 +117,7 @@ def helped_kill(
     )
     helper_on = np.minimum(np.maximum(on[own[:, None], helper], LEAST_ON), LARGEST_ON)
     helper_on = helper_on * (on_air_us / busy_us)[helper]
-    met = meets_probability(helper_on, on_air_us[helper], window_us[:, None])
-    return joint_kill(helped.kill, helped.omega, np.where(helper >= 0, met, 0.0))
+    by_stage = np.minimum(helper_on[:, None, :] * eager.transpose(0, 2, 1), LARGEST_ON)
+    met = meets_probability(by_stage, on_air_us[helper][:, None, :], window_us[:, None, None])
+    present = np.where((helper >= 0)[:, None, :], met, 0.0)
+    return joint_kill(helped.kill[:, None, :], helped.omega[:, None, :], present)

@@ -208,8 +208,8 @@ def _partners(scene: Scene, near: Near) -> tuple[IntArray, FloatArray]:
     weaker = np.arange(size)[None, :] > np.arange(size)[:, None]
     there = (near.station != NOBODY)[:, :, None] & (near.station != NOBODY)[:, None, :] & weaker
     there &= scene.senses[near.station[:, :, None], near.station[:, None, :]]
-    if not scene.settings.terms.joint_interference:
-        there[:] = False
+    if not scene.settings.terms.joint_interference or scene.settings.rts_cts:
+        there[:] = False  # RTS that collide are over before they harm data
     alone_mW = near.power_mW[:, :, None] + near.noise_mW[:, None, None]
     both_mW = alone_mW + near.power_mW[:, None, :]
     scheme = scene.scheme[links]

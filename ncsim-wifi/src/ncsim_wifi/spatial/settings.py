@@ -12,6 +12,7 @@ class Terms:
         hidden_loss: Stations that do not sense each other destroy frames.
         joint_interference: Several weak interferers act together.
         joint_chains: Back-off stages of two stations that hurt each other are correlated.
+        helpers_by_stage: So is how active those are that harm a third together.
         ack_loss: Acknowledgements of hidden links destroy frames.
         silence: Who does not understand a frame waits another time after it (EIFS).
         energy_sensing: Stations too weak to be sensed alone are sensed together.
@@ -24,6 +25,7 @@ class Terms:
     hidden_loss: bool = True
     joint_interference: bool = True
     joint_chains: bool = True
+    helpers_by_stage: bool = True
     ack_loss: bool = True
     silence: bool = True
     energy_sensing: bool = True

@@ -24,10 +24,11 @@ from ncsim_wifi.spatial.backoff import (
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.forms import ARRAYS, Forms, forms_for
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
-from ncsim_wifi.spatial.joint import JointStages
+from ncsim_wifi.spatial.joint import JointStages, RelationRates
 from ncsim_wifi.spatial.losses import (
     HiddenLoss,
     Traffic,
+    by_own_stage,
     hidden_loss,
 )
 from ncsim_wifi.spatial.near import far_noise_hazard, others_survival
@@ -37,6 +38,7 @@ from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.silence import Silence, silence_of
 from ncsim_wifi.spatial.statics import Statics, statics_of
+from ncsim_wifi.spatial.sums import row_sums
 
 STEPS_WITH_CHAINS = 4  # then every second one (MODEL 3.10)
 LEAST_ACTIVITY = 1e-12
@@ -84,6 +86,7 @@ class FixedPoint:
         self._packets = np.ones(links)
         self._clear = np.ones((stations, stations))
         self._blocked = np.zeros(stations)
+        self._eager: FloatArray | None = None
         overhead_us = scene.station_sums(self._attempts * scene.overhead_us)
         self._silence = Silence(overhead_us, np.zeros((stations, stations)))
 
@@ -181,6 +184,7 @@ class FixedPoint:
             self._attempts,
             self._scene.station_sums(self._attempts * self._answered),
             occupancy.on * (times.on_air_us / times.busy_us),
+            self._link_stages,
         )
 
     def _learn(self, traffic: Traffic, attempts: Attempts, *, with_chains: bool) -> None:
@@ -195,20 +199,21 @@ class FixedPoint:
             base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
-            hidden = hidden_loss(self._scene, statics, traffic, gates, self._forms)
+            hidden = hidden_loss(scene, statics, traffic, gates, self._eager, self._forms)
             base = base * self._partner_collisions(traffic, gates[1])
             base = base * self._ack_survival(traffic, hidden)
-            success, parts = self._success(base, hidden, hidden.survives)
+            success, parts = self._success(base, hidden, hidden.survives, hidden.grows)
             if with_chains and self._joint.count:
                 self._joint.update(
                     self._attempts,
                     success,
                     parts,
-                    (hidden.survives, hidden.hit, hidden.share),
+                    RelationRates(hidden.survives, hidden.hit, hidden.share, hidden.grows),
                     traffic.cycle_us,
                     self._forms.joint_stages,
                 )
-                success, _ = self._success(base, hidden, hidden.survives)
+                success, _ = self._success(base, hidden, hidden.survives, hidden.grows)
+                self._learn_eagerness(traffic, hidden)
             self._learn_handshake(traffic, hidden)
         else:
             base = base * self._ack_survival(traffic, None)
@@ -236,13 +241,22 @@ class FixedPoint:
             scene, unread, starts, self._answered, self._attempts, traffic.rate_per_us
         )
 
+    def _learn_eagerness(self, traffic: Traffic, hidden: HiddenLoss) -> None:
+        """Update how often interferers attempt while a sender is in each stage (MODEL 3.7)."""
+        if not self._scene.settings.terms.helpers_by_stage:
+            return
+        rate_per_us = 1.0 / traffic.cycle_us[self._statics.hostile.station]
+        mean_per_us = row_sums(hidden.alone * rate_per_us)
+        by_stage_per_us = self._joint.expected(hidden.alone, rate_per_us)
+        self._eager = by_stage_per_us / mean_per_us[:, None]
+
     def _learn_handshake(self, traffic: Traffic, hidden: HiddenLoss) -> None:
         """Update which RTS are answered, and who is silenced by CTS of hidden receivers."""
         scene, statics = self._scene, self._statics
         if not scene.settings.rts_cts:
             return
         gain = scene.settings.approximations.gain
-        by_stage, _ = self._success(self._heard, hidden, hidden.answered)
+        by_stage, _ = self._success(self._heard, hidden, hidden.answered, np.ones_like(hidden.hit))
         fresh = (self._link_stages * by_stage).sum(axis=1)
         self._answered = gain * fresh + (1.0 - gain) * self._answered
         after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
@@ -265,11 +279,11 @@ class FixedPoint:
         self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
 
     def _success(
-        self, base: FloatArray, hidden: HiddenLoss, survives: FloatArray
+        self, base: FloatArray, hidden: HiddenLoss, survives: FloatArray, grows: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return tot_l(a), and sbar_r(a) of each relation (MODEL 3.9)."""
         hostile = self._statics.hostile
-        parts = self._joint.expected(hidden.alone, survives)
+        parts = by_own_stage(self._joint.expected(hidden.alone, survives), grows)
         logs = hidden.phi[:, None] * np.log(np.maximum(parts, 1e-12))
         whole = np.ones((len(base), STAGES))
         whole[hostile.links] = np.exp(np.add.reduceat(logs, hostile.link_starts))

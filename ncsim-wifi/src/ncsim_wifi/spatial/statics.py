@@ -56,7 +56,9 @@ class Statics:
         longest_us: The longest window that is asked about.
         alone_hazard: h(w) of each relation.
         alone_half_kill: The part of half overlapped frames that it destroys.
+        noticed_us: Until when a start of the interferer is fatal to an RTS, shape (relations,).
         helped: The relations that may act together with others.
+        helper_relation: Relations of the same link with these others, -1 where there is none.
         by_cts: Whether a relation is one of stations kept apart by CTS only.
         by_cts_survives: What handshakes of these survive, by stage of the other.
         by_cts_missed: How often neither meets the other at all.
@@ -87,7 +89,9 @@ class Statics:
     longest_us: float
     alone_hazard: FloatArray
     alone_half_kill: FloatArray
+    noticed_us: FloatArray
     helped: Helped
+    helper_relation: IntArray
     by_cts: BoolArray
     by_cts_survives: FloatArray
     by_cts_missed: FloatArray
@@ -116,9 +120,11 @@ def statics_of(scene: Scene) -> Statics:
     hazards = ack_hazard(scene, near.noise_mW)
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
-    fatal = fatal_slots(fate_of(scene, hostile, alone, RTS_RATIO_dB), scene.data_us[hostile.link])
+    fate = fate_of(scene, hostile, alone, RTS_RATIO_dB)
+    fatal = fatal_slots(fate, scene.data_us[hostile.link])
+    noticed_us = np.where(fate.captures, 0.0, CTS_NOTICED_us)
     rivals, earlier_rivals = _rivals(scene, hostile)
-    window_us = _windows_us(scene, hostile)
+    window_us = _windows_us(scene, hostile, noticed_us)
     return Statics(
         scene.senses.astype(np.float64),
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
@@ -130,7 +136,9 @@ def statics_of(scene: Scene) -> Statics:
         max(window_us.max(initial=0.0), CTS_NOTICED_us),
         alone,
         half_kill(alone),
+        noticed_us,
         _helped(scene, hostile),
+        _helper_relation(scene, hostile),
         scene.silenced_by_cts[own, hostile.station],
         unmet(fatal),
         unmet(np.full_like(fatal, SLOTS_MET)),
@@ -186,7 +194,16 @@ def _rivals(
     return (one, two), (one[earlier], two[earlier])
 
 
-def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
+def _helper_relation(scene: Scene, hostile: Hostile) -> IntArray:
+    """Return the relation of each helper with the link it helps to harm, -1 if it has none."""
+    number = np.full((len(scene.links), scene.station_count), -1)
+    number[hostile.link, hostile.station] = np.arange(len(hostile))
+    some = hostile.with_helpers
+    helper = hostile.helper[some]
+    return np.where(helper >= 0, number[hostile.link[some][:, None], helper], -1)
+
+
+def _windows_us(scene: Scene, hostile: Hostile, noticed_us: FloatArray) -> FloatArray:
     """Return V_r (MODEL 2, and 3.8 for RTS/CTS)."""
     link = hostile.link
     window_us = np.where(hostile.is_strong, scene.data_us[link], scene.protected_us[link])
@@ -197,7 +214,7 @@ def _windows_us(scene: Scene, hostile: Hostile) -> FloatArray:
     window_us = np.where(hostile.is_strong, whole_us, window_us)
     burst_kill = -np.expm1(-hostile.delta[:, 0] * RTS_us / scene.protected_us[link])
     by_cts_only = hostile.by_cts_only & (burst_kill < LETHAL_BURST)
-    return np.where(hears_cts | by_cts_only, CTS_NOTICED_us, window_us)
+    return np.where(hears_cts | by_cts_only, noticed_us, window_us)
 
 
 def _hears_cts_of(scene: Scene, own: IntArray, other: IntArray) -> BoolArray:

@@ -13,8 +13,8 @@ from ncsim_wifi.spatial.compiled.compiling import inlined
 LAST = STAGES - 1
 KINDS = 5
 SUCCESS_A, SUCCESS_B, COMMON, LOSS_A, LOSS_B = range(KINDS)
-SIDE_RATES = 5
-SURVIVES, HIT, SHARE, OTHER, RATE = range(SIDE_RATES)
+SIDE_RATES = 6
+SURVIVES, HIT, SHARE, OTHER, RATE, GROWS = range(SIDE_RATES)
 
 
 @inlined
@@ -49,6 +49,7 @@ def _fill_side(side: SideRates, chain: int, values: FloatArray) -> None:
         values[SHARE, stage] = side.share[chain, stage]
         values[OTHER, stage] = side.other[chain, stage]
         values[RATE, stage] = 1.0 / side.cycle_us[chain, stage]
+        values[GROWS, stage] = side.grows[chain, stage]
 
 
 @inlined
@@ -57,7 +58,8 @@ def _fill_rates(sides: FloatArray, rates: FloatArray) -> None:
     for a in range(STAGES):
         for b in range(STAGES):
             rate_a, rate_b = sides[0, RATE, a], sides[1, RATE, b]
-            survives_a, survives_b = sides[0, SURVIVES, b], sides[1, SURVIVES, a]
+            survives_a = max(0.0, 1.0 - sides[0, GROWS, a] * (1.0 - sides[0, SURVIVES, b]))
+            survives_b = max(0.0, 1.0 - sides[1, GROWS, b] * (1.0 - sides[1, SURVIVES, a]))
             hit_a, hit_b = sides[0, HIT, b], sides[1, HIT, a]
             success_a = survives_a * sides[0, OTHER, a] * rate_a
             success_b = survives_b * sides[1, OTHER, b] * rate_b

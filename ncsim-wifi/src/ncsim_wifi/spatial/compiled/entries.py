@@ -47,10 +47,14 @@ def loops_of(sources: str) -> Forms:
         return occupancy.exact_occupancy(table, activity)
 
     def helped_kill(
-        helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+        helped: Helped,
+        on: FloatArray,
+        on_air_us: FloatArray,
+        busy_us: FloatArray,
+        eager: FloatArray,
     ) -> FloatArray:
         assert sources
-        return overlap.helped_kill(helped, on, on_air_us, busy_us)
+        return overlap.helped_kill(helped, on, on_air_us, busy_us, eager)
 
     return Forms(
         kept_on_disk(attempts_of),

@@ -6,40 +6,40 @@ Source: MODEL 3.7; see ``ncsim_wifi.spatial.overlap``.
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import halving_sum, inlined
+from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
 
 
 @inlined
 def helped_kill(
-    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray
+    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray, eager: FloatArray
 ) -> FloatArray:
-    """Return kd of each of these relations."""
-    count, helpers = helped.helper.shape
-    result = np.empty(count)
-    chance, killed = np.empty(1 << helpers), np.empty(1 << helpers)
+    """Return kd of each of these relations, by stage of the sender."""
+    count, helpers, stages = eager.shape
+    result = np.empty((count, stages))
+    killed, total = np.empty(1 << helpers), np.empty(1 << helpers)
     for at in range(count):
         own, station = helped.own[at], helped.station[at]
         part = min(max(on[own, station], LEAST_ON), LARGEST_ON)
         window_us = _overlap_us(
             on_air_us[station], busy_us[station] / part, helped.protected_us[at], helped.scale
         )
-        chance[0] = 1.0
-        for place in range(helpers):
-            helper, met = helped.helper[at, place], 0.0
-            if helper >= 0:
-                part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
-                part = part * (on_air_us[helper] / busy_us[helper])
-                met = _met(part, on_air_us[helper], window_us)
-            half = 1 << place
-            for held in range(half):
-                chance[half + held] = chance[held] * met
-                chance[held] = chance[held] * (1.0 - met)
-        for held in range(1 << helpers):
-            chance[held] = helped.omega[at, held] * chance[held]
-            killed[held] = chance[held] * helped.kill[at, held]
-        total = max(halving_sum(chance), 1e-300)
-        result[at] = min(halving_sum(killed) / total, LARGEST_KILL)
+        for stage in range(stages):
+            for held in range(1 << helpers):
+                total[held] = helped.omega[at, held]
+                killed[held] = helped.omega[at, held] * helped.kill[at, held]
+            for place in range(helpers - 1, -1, -1):
+                helper, met = helped.helper[at, place], 0.0
+                if helper >= 0:
+                    part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
+                    part = part * (on_air_us[helper] / busy_us[helper])
+                    part = min(part * eager[at, place, stage], LARGEST_ON)
+                    met = _met(part, on_air_us[helper], window_us)
+                half = 1 << place
+                for held in range(half):
+                    killed[held] = killed[held] * (1.0 - met) + killed[half + held] * met
+                    total[held] = total[held] * (1.0 - met) + total[half + held] * met
+            result[at, stage] = min(killed[0] / max(total[0], 1e-300), LARGEST_KILL)
     return result
 
 
