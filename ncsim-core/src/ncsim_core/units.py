@@ -16,7 +16,9 @@ COMPLETION_TOLERANCE_us = 1e-5
 HORIZON_us: Instant = 9_000_000_000 * MICROSECONDS_PER_SECOND
 """No run goes on longer than this (285 years): beyond it a float no longer tells microseconds."""
 BEYOND_us: Instant = HORIZON_us + 1
-"""What stands for every later instant, and for never."""
+"""What stands for every later instant."""
+NEVER_us: Instant = 2**62
+"""Later than any instant that the engine can reckon with."""
 
 MEGABITS_PER_MEGABYTE = 8.0
 MAX_QUANTITY = 1e100

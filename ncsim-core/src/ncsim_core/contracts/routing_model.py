@@ -49,13 +49,15 @@ class RouteTable:
         Raises:
             PluginError: The model answered with something that is no route.
         """
-        ends = (source, target)
-        if ends not in self._checked:
+        try:
+            return self._checked[source, target]
+        except KeyError:
             row = self._rows.get(source)
             if row is None:
                 row = self._rows[source] = self._row(source)
-            self._checked[ends] = self._checked_route(source, target, row[target])
-        return self._checked[ends]
+            route = self._checked_route(source, target, row[target])
+            self._checked[source, target] = route
+            return route
 
     def _row(self, source: NodeIndex) -> Sequence[Route | None]:
         """Return the model's answers for one source; they are checked when they are asked for."""

@@ -71,23 +71,27 @@ def checked_placement(models: Models, dag: DAG, snapshot: NetworkSnapshot) -> li
     plan: object = asked(who, lambda: models.scheduler.schedule(dag, snapshot))
     if not isinstance(plan, PlacementPlan) or not isinstance(plan.nodes, Mapping):
         raise PlacementError(f"{who} answered with {plan!r} instead of a PlacementPlan")
-    lacking = [task.id for task in dag.tasks if task.id not in plan.nodes]
-    if lacking:
+    if not plan.nodes.keys() >= dag.task_index.keys():
+        lacking = [task.id for task in dag.tasks if task.id not in plan.nodes]
         shown = ", ".join(map(repr, lacking[:MAX_NAMES_SHOWN]))
         more = f" and {len(lacking) - MAX_NAMES_SHOWN} more" if lacking[MAX_NAMES_SHOWN:] else ""
         raise PlacementError(f"{who} left tasks of DAG {dag.id!r} unplaced: {shown}{more}")
-    index = snapshot.network.node_index
-    return [
-        _known_node(task.pinned_to or plan.nodes[task.id], index, f"{who}: task {task.id!r}")
-        for task in dag.tasks
-    ]
-
-
-def _known_node(node: NodeId, index: Mapping[NodeId, NodeIndex], blame: str) -> NodeIndex:
+    index, nodes = snapshot.network.node_index, plan.nodes
     try:
-        return index[node]
+        return [index[task.pinned_to or nodes[task.id]] for task in dag.tasks]
     except (KeyError, TypeError):
-        raise PlacementError(f"{blame} is placed on unknown node {node!r}") from None
+        raise PlacementError(f"{who}: {_misplaced(plan, dag, index)}") from None
+
+
+def _misplaced(plan: PlacementPlan, dag: DAG, index: Mapping[NodeId, NodeIndex]) -> str:
+    """Return which task is placed on a node that does not exist."""
+    known = [*index]  # a node may be something without a hash
+    task, node = next(
+        (task, node)
+        for task in dag.tasks
+        if (node := task.pinned_to or plan.nodes[task.id]) not in known
+    )
+    return f"task {task.id!r} is placed on unknown node {node!r}"
 
 
 class CheckedSession(InterferenceSession):

@@ -1,17 +1,22 @@
-"""The future: a heap ordered by time, kind, rank and insertion.
+"""The future: a heap ordered by time, kind and place among events of the kind.
 
 Entries are plain tuples of whole numbers, which compare and move far faster than objects.
 """
 
+from __future__ import annotations
+
 from heapq import heappop, heappush
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from ncsim_core.engine.events import TRANSFER_COMPLETE
-from ncsim_core.units import Instant
+from ncsim_core.engine.events import TRANSFER_COMPLETE, TRANSFER_START
+from ncsim_core.units import Instant, NEVER_us
 
-Due: TypeAlias = tuple[Instant, int, int, int, int]
-"""Time; kind of event; rank among events of the kind; ticket, the number of insertion, which breaks
-what ties are left; number of the DAG, task or transfer. Smaller goes first."""
+if TYPE_CHECKING:
+    from ncsim_core.engine.state import Transfer
+
+Due: TypeAlias = tuple[Instant, int, int, int]
+"""Time; kind of event; place among events of the kind, which is the rank of a transfer and for all
+else the order of insertion; number of the DAG, task or transfer. Smaller goes first."""
 
 
 class EventQueue:
@@ -19,54 +24,68 @@ class EventQueue:
 
     Completions of transfers move often, mostly to later. A completion that is put off costs
     nothing until its entry, now too early, comes to the head and is put back where it belongs.
+
+    Most events are due at the very instant at which they come up. They have a heap of their own,
+    which is almost empty: in the other they would pass everything that is still to come.
+
+    Args:
+        transfers: By number; they know when they complete.
+        soon: Events that are due at the instant at which they were added.
+        later: All others.
     """
 
-    __slots__ = ("_completes_us", "_entered_us", "_heap", "_next_ticket")
+    __slots__ = ("_next_ticket", "_transfers", "later", "soon")
 
-    def __init__(self) -> None:
-        self._heap: list[Due] = []
+    def __init__(self, transfers: dict[int, Transfer]) -> None:
+        self.soon: list[Due] = []
+        self.later: list[Due] = []
+        self._transfers = transfers
         self._next_ticket = 0
-        self._completes_us: dict[int, Instant] = {}  # by transfer, unless it is paused
-        self._entered_us: dict[int, Instant] = {}  # by transfer, the entry that counts
 
-    def push(self, at_us: Instant, kind: int, number: int, rank: int = 0) -> None:
-        """Add an event of any kind but the completion of a transfer."""
+    def push(self, at_us: Instant, kind: int, number: int) -> None:
+        """Add an event of a DAG or a task, after those of its time and kind."""
         ticket = self._next_ticket
         self._next_ticket = ticket + 1
-        heappush(self._heap, (at_us, kind, rank, ticket, number))
+        heappush(self.later, (at_us, kind, ticket, number))
 
-    def complete_at(self, at_us: Instant, transfer: int, rank: int) -> None:
-        """Let a transfer complete at a time, and at no other."""
-        self._completes_us[transfer] = at_us
-        entered_us = self._entered_us.get(transfer)
-        if entered_us is None or at_us < entered_us:
-            self._enter(at_us, transfer, rank)
+    def push_soon(self, now_us: Instant, kind: int, number: int) -> None:
+        """Add an event of a task that is due now, after those of its kind."""
+        ticket = self._next_ticket
+        self._next_ticket = ticket + 1
+        heappush(self.soon, (now_us, kind, ticket, number))
 
-    def pause(self, transfer: int) -> None:
-        """Let a transfer not complete until something else is said."""
-        self._completes_us.pop(transfer, None)
+    def start_at(self, at_us: Instant, transfer: Transfer) -> None:
+        """Let the byte service of a transfer begin at a time."""
+        heappush(self.later, (at_us, TRANSFER_START, transfer.rank, transfer.number))
+
+    def start_soon(self, now_us: Instant, transfer: Transfer) -> None:
+        """Let the byte service of a transfer begin now, after all else that is due now."""
+        heappush(self.soon, (now_us, TRANSFER_START, transfer.rank, transfer.number))
+
+    def enter(self, transfer: Transfer) -> None:
+        """Add the completion of a transfer, needed if it has none or one that is too late."""
+        transfer.entered_us = transfer.completes_us
+        entry = (transfer.completes_us, TRANSFER_COMPLETE, transfer.rank, transfer.number)
+        heappush(self.later, entry)
 
     def pop(self) -> Due | None:
         """Remove and return the next event, or ``None`` if nothing is left."""
-        heap = self._heap
-        while heap:
-            due = heappop(heap)
-            if due[1] != TRANSFER_COMPLETE or self._is_time(due):
+        soon, later = self.soon, self.later
+        while soon or later:
+            due = heappop(soon if soon and not (later and later[0] < soon[0]) else later)
+            if due[1] != TRANSFER_COMPLETE or self.is_time(due):
                 return due
         return None
 
-    def _enter(self, at_us: Instant, transfer: int, rank: int) -> None:
-        self._entered_us[transfer] = at_us
-        self.push(at_us, TRANSFER_COMPLETE, transfer, rank)
-
-    def _is_time(self, due: Due) -> bool:
+    def is_time(self, due: Due) -> bool:
         """Return whether a transfer completes now; if it does later, put its entry there."""
-        at_us, _, rank, _, transfer = due
-        if self._entered_us.get(transfer) != at_us:
+        at_us = due[0]
+        transfer = self._transfers[due[3]]
+        if transfer.entered_us != at_us:
             return False  # an earlier entry has taken its place
-        completes_us = self._completes_us.get(transfer)
-        if completes_us is not None and completes_us > at_us:
-            self._enter(completes_us, transfer, rank)
-            return False
-        del self._entered_us[transfer]
-        return self._completes_us.pop(transfer, None) is not None
+        transfer.entered_us = NEVER_us
+        if transfer.completes_us == at_us:
+            return True
+        if transfer.completes_us < NEVER_us:
+            self.enter(transfer)
+        return False

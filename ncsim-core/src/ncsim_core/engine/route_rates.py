@@ -4,19 +4,20 @@ Its answer depends on the routes alone, so only what it changes has to be touche
 """
 
 from ncsim_core.engine.boundary import checked_route_rates
-from ncsim_core.engine.moves import Move, Switched
+from ncsim_core.engine.moves import Move, Touched
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
 from ncsim_core.network import Route
 
 
-def moves_by_route(switched: Switched, state: State, setup: Setup) -> list[Move]:
+def moves_by_route(touched: Touched, state: State, setup: Setup) -> list[Move]:
     """Return the transfers whose rate or bottleneck moves, by number.
 
     With global reach, all that are under way.
     """
     if state.interference is not None:
-        state.interference.update(*switched)
+        on, off, _ = touched
+        state.interference.update(on, off)
     if not state.flows:
         return []
     flows = sorted(state.flows.values(), key=_canonical)

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterable
+from heapq import heappop
 from typing import TYPE_CHECKING, Final, TypeAlias, assert_never
 
 from ncsim_core.engine.event_queue import Due
-from ncsim_core.engine.events import DAG_INJECT, Event, EventKind
+from ncsim_core.engine.events import DAG_INJECT, TRANSFER_COMPLETE, Event, EventKind
 from ncsim_core.engine.looping import compiled_run_of
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.outcome import Outcome, RunStatus
@@ -137,7 +138,7 @@ class Simulation:
         if self.outcome is not None:
             return None
         due = self._advance(1)
-        return None if due is None else Event(due[0], EventKind(due[1]), due[4])
+        return None if due is None else Event(due[0], EventKind(due[1]), due[3])
 
     def _advance(self, count: int) -> Due | None:
         """Handle up to ``count`` events and return the last, ``None`` if the run ended instead."""
@@ -152,18 +153,32 @@ class Simulation:
             return None
 
     def _handle(self, count: int) -> Due | None:
-        state, setup, pop = self._state, self.setup, self._state.queue.pop
-        last_us, max_events = self._last_us, self._max_events
+        state, setup, queue = self._state, self.setup, self._state.queue
+        if state.events >= self._max_events:
+            self._end_without_event(queue.pop())
+            return None
+        stop_at = min(state.events + count, self._max_events)
+        soon, later, is_time = queue.soon, queue.later, queue.is_time
         due: Due | None = None
-        for _ in range(count):
-            due = pop()
-            if due is None or not state.now_us <= due[0] <= last_us or state.events >= max_events:
-                self._end_without_event(due)
+        while state.events < stop_at:
+            if soon and not (later and later[0] < soon[0]):  # as in queue.pop(), without the call
+                due = heappop(soon)
+            elif later:
+                due = heappop(later)
+                if due[1] == TRANSFER_COMPLETE and not is_time(due):
+                    continue
+            else:
+                self._end_with_nothing_left()
                 return None
-            state.now_us, kind, _, _, number = due
+            at_us, kind, _, number = due
+            if at_us != state.now_us:
+                if not state.now_us < at_us <= self._last_us:
+                    self._end_without_event(due)
+                    return None
+                state.now_us = at_us
             state.events += 1
             HANDLERS[kind](number, state, setup)
-            if state.unroutable:
+            if kind == DAG_INJECT and state.unroutable:
                 self._end(RunStatus.UNROUTABLE, _unroutable_detail(state))
                 return due
         return due
@@ -242,7 +257,7 @@ def _blocked_detail(state: State, setup: Setup) -> str:
 
 def _endless_detail(due: Due, setup: Setup) -> str:
     """Return what would happen after the end of time, and why."""
-    kind, number = EventKind(due[1]), due[4]
+    kind, number = EventKind(due[1]), due[3]
     if kind is EventKind.DAG_INJECT:
         what = f"DAG {setup.injections[number].dag.id}, whose time is too late"
     elif kind in (EventKind.TRANSFER_START, EventKind.TRANSFER_COMPLETE):

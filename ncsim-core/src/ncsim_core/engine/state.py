@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING
 from ncsim_core.engine.boundary import CheckedQueue, asked
 from ncsim_core.engine.event_queue import EventQueue
 from ncsim_core.engine.sessions.choice import session_of
+from ncsim_core.units import NEVER_us
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ncsim_core.contracts.interference_model import InterferenceSession
+    from ncsim_core.engine.numbering import DependencyEntry, TaskEntry
     from ncsim_core.engine.observer import Observer
-    from ncsim_core.engine.setup import DependencyEntry, Setup, TaskEntry
+    from ncsim_core.engine.setup import Setup
     from ncsim_core.network import LinkIndex, NodeIndex, Route
     from ncsim_core.units import Instant
 
@@ -59,6 +63,7 @@ class Transfer:
 
     Args:
         number: Of the dependency.
+        rank: Of the dependency.
         entry: The dependency.
         route: The links it occupies, fixed when it was created.
         remaining_MB: Bytes not served up to ``credited_us``.
@@ -66,11 +71,14 @@ class Transfer:
         credited_us: Up to when service has been credited.
         rate_MBps: Service rate since then; 0 means that it is paused.
         bottleneck: First link of the route with the least share.
+        completes_us: When its last byte will be served, as things are.
+        entered_us: Time of its entry in the queue.
         started_us: When byte service began.
         ended_us: When the last byte was served.
     """
 
     number: int
+    rank: int
     entry: DependencyEntry
     route: Route
     remaining_MB: float
@@ -78,6 +86,8 @@ class Transfer:
     credited_us: Instant = 0
     rate_MBps: float = 0.0
     bottleneck: LinkIndex = -1
+    completes_us: Instant = NEVER_us
+    entered_us: Instant = NEVER_us
     started_us: Instant | None = None
     ended_us: Instant | None = None
 
@@ -105,19 +115,22 @@ class LinkStates:
     """The links as their transfers see them; lists by link index.
 
     Args:
+        bandwidth_MBps: Clean bandwidth, which never changes.
         flows: Transfers that occupy the link, by number, in order of their start.
         factor: Interference factor while the link is active.
         share_MBps: What each of its flows would get from it (Eq. 1), while it is active.
     """
 
+    bandwidth_MBps: Sequence[float]
     flows: list[dict[int, Transfer]]
     factor: list[float]
     share_MBps: list[float]
 
     @classmethod
-    def idle(cls, count: int) -> LinkStates:
+    def idle(cls, bandwidth_MBps: Sequence[float]) -> LinkStates:
         """Return links that nobody uses."""
-        return cls([{} for _ in range(count)], [1.0] * count, [0.0] * count)
+        count = len(bandwidth_MBps)
+        return cls(bandwidth_MBps, [{} for _ in range(count)], [1.0] * count, [0.0] * count)
 
 
 @dataclass(slots=True, eq=False)
@@ -163,17 +176,18 @@ class State:
         """Return the state before the first event."""
         models = setup.models
         who = models.identity("queue_model")
+        transfers: dict[int, Transfer] = {}
         return cls(
             tasks=[TaskRun(entry, entry.incoming_count) for entry in setup.tasks],
-            transfers={},
+            transfers=transfers,
             flows={},
             nodes=[
                 NodeState(CheckedQueue(asked(who, models.new_queue), who))
                 for _ in setup.network.nodes
             ],
-            links=LinkStates.idle(len(setup.network.links)),
+            links=LinkStates.idle(setup.bandwidth_MBps),
             interference=session_of(setup),
-            queue=EventQueue(),
+            queue=EventQueue(transfers),
             unfinished_tasks=len(setup.tasks),
         )
 

@@ -25,7 +25,7 @@ def inject_dag(dag_number: int, state: State, setup: Setup) -> None:
     first = setup.first_task[dag_number]
     for run in state.tasks[first : first + len(setup.injections[dag_number].dag.tasks)]:
         if run.missing == 0:
-            state.queue.push(state.now_us, TASK_READY, run.entry.number)
+            state.queue.push_soon(state.now_us, TASK_READY, run.entry.number)
 
 
 def place_dag(dag_number: int, seen: NetworkSnapshot, state: State, setup: Setup) -> None:
@@ -35,7 +35,7 @@ def place_dag(dag_number: int, seen: NetworkSnapshot, state: State, setup: Setup
     first = setup.first_task[dag_number]
     for run, node in zip(state.tasks[first : first + len(nodes)], nodes, strict=True):
         run.node = node
-        state.free_tasks_placed += run.entry.task.pinned_to is None
+    state.free_tasks_placed += [task.pinned_to for task in dag.tasks].count(None)
     for observer in state.observers:
         observer.dag_injected(state.now_us, dag_number, nodes)
     state.unroutable += unroutable_dependencies(dag_number, state, setup)
@@ -45,12 +45,19 @@ def unroutable_dependencies(dag_number: int, state: State, setup: Setup) -> list
     """Return a line for each dependency between two nodes that no usable route connects."""
     first = setup.first_dependency[dag_number]
     count = len(setup.injections[dag_number].dag.dependencies)
-    lines = []
-    for entry in setup.dependencies[first : first + count]:
-        source, target = state.tasks[entry.source], state.tasks[entry.target]
-        if source.node != target.node and setup.routes.route(source.node, target.node) is None:
-            lines.append(_unroutable_line(source, target, setup))
-    return lines
+    entries = setup.dependencies[first : first + count]
+    tasks, route = state.tasks, setup.routes.route
+    ends = [(tasks[entry.source].node, tasks[entry.target].node) for entry in entries]
+    apart = {
+        (source, target)
+        for source, target in dict.fromkeys(ends)
+        if source != target and route(source, target) is None
+    }
+    return [
+        _unroutable_line(tasks[entry.source], tasks[entry.target], setup)
+        for entry, pair in zip(entries, ends, strict=True)
+        if apart and pair in apart
+    ]
 
 
 def _unroutable_line(source: TaskRun, target: TaskRun, setup: Setup) -> str:
@@ -156,7 +163,7 @@ def complete_task(task: int, state: State, setup: Setup) -> None:
 def _reserve(node: NodeState, task: int, state: State) -> None:
     """Keep a node for a task before its start event, so that no other start can claim it."""
     node.task = task
-    state.queue.push(state.now_us, TASK_START, task)
+    state.queue.push_soon(state.now_us, TASK_START, task)
 
 
 def waiting_task(run: TaskRun, setup: Setup) -> WaitingTask:

@@ -1,6 +1,6 @@
 """Transfers: created when their producer ends, started after latency, completed."""
 
-from ncsim_core.engine.events import TASK_READY, TRANSFER_START
+from ncsim_core.engine.events import TASK_READY
 from ncsim_core.engine.refresh import occupy, refresh, release
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -18,11 +18,13 @@ def create_transfer(
     if route is None:
         raise EngineError(f"dependency {dependency} was found routable at injection, now it is not")
     now_us = state.now_us
-    state.transfers[dependency] = Transfer(dependency, entry, route, entry.size_MB, now_us)
-    starts_us = now_us
-    if not setup.is_without_latency:
-        starts_us += us_from_s(setup.network.route_latency_s(route))
-    state.queue.push(starts_us, TRANSFER_START, dependency, entry.rank)
+    transfer = Transfer(dependency, entry.rank, entry, route, entry.size_MB, now_us)
+    state.transfers[dependency] = transfer
+    if setup.is_without_latency:
+        state.queue.start_soon(now_us, transfer)
+    else:
+        after_us = us_from_s(setup.network.route_latency_s(route))
+        state.queue.start_at(now_us + after_us, transfer)
 
 
 def start_transfer(number: int, state: State, setup: Setup) -> None:
@@ -34,7 +36,8 @@ def start_transfer(number: int, state: State, setup: Setup) -> None:
     if transfer.remaining_MB > 0:
         refresh(transfer, occupy, state, setup)
     else:
-        state.queue.complete_at(state.now_us, number, transfer.entry.rank)
+        transfer.completes_us = state.now_us
+        state.queue.enter(transfer)
 
 
 def complete_transfer(number: int, state: State, setup: Setup) -> None:
@@ -53,4 +56,4 @@ def deliver_input(task: int, state: State) -> None:
     run = state.tasks[task]
     run.missing -= 1
     if run.missing == 0:
-        state.queue.push(state.now_us, TASK_READY, task)
+        state.queue.push_soon(state.now_us, TASK_READY, task)

@@ -109,5 +109,5 @@ class CompiledRun:
 
     def _note_due(self, *, is_none: bool) -> None:
         record = self._arrays.state
-        due = int(record.due_us), int(record.due_kind), 0, 0, int(record.due_number)
+        due = int(record.due_us), int(record.due_kind), 0, int(record.due_number)
         self.due = None if is_none else due

@@ -37,7 +37,7 @@ def unload(arrays: Arrays, state: State, setup: Setup) -> None:
     state.transfers = {transfer.number: transfer for transfer in transfers}
     _unload_links(arrays, state, setup)
     _unload_nodes(arrays, state, setup)
-    state.queue = _queue(arrays)
+    state.queue = _queue(arrays, state.transfers)
 
 
 def under_way(arrays: Arrays, state: State, setup: Setup) -> Iterator[Transfer]:
@@ -65,6 +65,7 @@ def transfers_of(
         ends = state.tasks[entry.source].node, state.tasks[entry.target].node
         yield Transfer(
             number,
+            entry.rank,
             entry,
             setup.routes.route(*ends) or (),
             remaining_MB,
@@ -72,8 +73,8 @@ def transfers_of(
             credited_us,
             rate_MBps,
             bottleneck,
-            _time(started_us),
-            _time(ended_us),
+            started_us=_time(started_us),
+            ended_us=_time(ended_us),
         )
 
 
@@ -122,18 +123,20 @@ def _unload_nodes(arrays: Arrays, state: State, setup: Setup) -> None:
         state.nodes.append(NodeState(line, None if reserved_for == NONE else reserved_for))
 
 
-def _queue(arrays: Arrays) -> EventQueue:
-    queue, transfers = EventQueue(), arrays["transfers"]
+def _queue(arrays: Arrays, transfers: dict[int, Transfer]) -> EventQueue:
+    queue, rows = EventQueue(transfers), arrays["transfers"]
     entries = arrays["queue"][: int(arrays.state.entries)]
     for at_us, order, number in sorted(entries.tolist()):
         kind = order >> KIND_SHIFT
         if kind == TRANSFER_COMPLETE:
-            completes_us = int(transfers.completes_us[number])
+            completes_us = int(rows.completes_us[number])
             if completes_us >= 0:
-                queue.complete_at(completes_us, number, int(transfers.rank[number]))
+                transfers[number].completes_us = completes_us
+                queue.enter(transfers[number])
+        elif kind == TRANSFER_START:
+            queue.start_at(at_us, transfers[number])
         else:
-            is_transfer = kind == TRANSFER_START
-            queue.push(at_us, kind, number, int(transfers.rank[number]) if is_transfer else 0)
+            queue.push(at_us, kind, number)
     return queue
 
 
