@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Final
 
 from engine import SIZES, TARGETS_s
+from memory_by_size import CASES
 
 HERE: Final = Path(__file__).parent
 OUTPUT: Final = HERE.parent / "out" / "bench.md"
@@ -107,6 +108,10 @@ def _long_lines() -> Iterator[Line]:
         name, grown = f"memory: 30,000 to 1,000,000 events, {form}", ("memory.py", form)
         yield Line(f"{name}, per 100,000", grown, r"and ([\d.]+) MB per", unit="MB", is_long=True)
         yield Line(f"{name}, off a line", grown, r"is (\d+) % off", 15, "%", is_long=True)
+    for case in CASES:
+        command = ("memory_by_size.py", "one", case)
+        each = r"\| (\d+) \| \d+ \| [\d.]+ \|$"
+        yield Line(f"memory: {case}, per event", command, each, unit="bytes", is_long=True)
     name = "sweep: 10,000 runs of 3x3 x 5, wall clock, two workers"
     yield Line(name, ("sweep.py",), r"runs in ([\d.]+) s", 60, is_long=True)
 

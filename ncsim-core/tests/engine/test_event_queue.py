@@ -36,9 +36,9 @@ def test_events_come_in_the_order_of_a_list_that_is_searched(steps):
     for what, *values in [*steps, *[("pop",)] * 70]:
         if what.startswith("push"):
             at_us = now_us + sum(values)
-            tickets += 1
             (queue.push if values else queue.push_soon)(at_us, TASK_READY, tickets)
             events.append((at_us, TASK_READY, tickets, tickets))
+            tickets += 1
         elif what == "complete":
             after_us, number = values
             complete_at(now_us + after_us, transfers[number], queue)

@@ -22,7 +22,8 @@ class RoutingModel(ABC):
     def routes_from(self, source: NodeIndex, network: Network) -> Sequence[Route | None]:
         """Return the routes from one node to every node, in node order.
 
-        Override it when one search answers all targets; the answers must equal ``route``'s.
+        Override it when one search answers all targets; the answers must equal ``route``'s. They
+        may be a sequence that puts each route together when it is asked for: most never are.
         """
         return [self.route(source, target, network) for target in range(len(network.nodes))]
 
@@ -51,25 +52,35 @@ class RouteTable:
         """
         try:
             return self._checked[source, target]
-        except KeyError:
-            row = self._rows.get(source)
-            if row is None:
-                row = self._rows[source] = self._row(source)
-            route = self._checked_route(source, target, row[target])
-            self._checked[source, target] = route
-            return route
+        except KeyError:  # asked for the first time
+            pass
+        if source not in self._rows:
+            self._rows[source] = self._row(source)
+        route = self._checked_route(source, target, self._answer(source, target))
+        self._checked[source, target] = route
+        return route
 
-    def _row(self, source: NodeIndex) -> Sequence[Route | None]:
-        """Return the model's answers for one source; they are checked when they are asked for."""
+    def _answer(self, source: NodeIndex, target: NodeIndex) -> Route | None:
+        """Return the model's answer, which may be put together only now."""
         try:
-            answers = list(self._model.routes_from(source, self._network))
+            return self._rows[source][target]
         except NcsimError:
             raise
         except Exception as error:
             raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
-        if len(answers) != len(self._network.nodes):
+
+    def _row(self, source: NodeIndex) -> Sequence[Route | None]:
+        """Return the model's answers for one source; they are checked when they are asked for."""
+        try:
+            answers = self._model.routes_from(source, self._network)
+            count = len(answers)
+        except NcsimError:
+            raise
+        except Exception as error:
+            raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
+        if count != len(self._network.nodes):
             raise PluginError(
-                f"{self._label}: routes_from() gave {len(answers)} routes "
+                f"{self._label}: routes_from() gave {count} routes "
                 f"for {len(self._network.nodes)} nodes"
             )
         return answers

@@ -143,9 +143,12 @@ class Simulation:
     def _advance(self, count: int) -> Due | None:
         """Handle up to ``count`` events and return the last, ``None`` if the run ended instead."""
         try:
-            if self._compiled is None:
-                return self._handle(count)
-            return self._handle_compiled(count, self._compiled)
+            if self._compiled is not None:
+                return self._handle_compiled(count, self._compiled)
+            if self._state.events >= self._max_events:
+                self._end_without_event(self._state.queue.pop())
+                return None
+            return self._handle(count)
         except EngineError:
             raise
         except NcsimError as error:
@@ -154,9 +157,6 @@ class Simulation:
 
     def _handle(self, count: int) -> Due | None:
         state, setup, queue = self._state, self.setup, self._state.queue
-        if state.events >= self._max_events:
-            self._end_without_event(queue.pop())
-            return None
         stop_at = min(state.events + count, self._max_events)
         soon, later, is_time = queue.soon, queue.later, queue.is_time
         due: Due | None = None
