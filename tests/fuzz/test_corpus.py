@@ -1,5 +1,6 @@
 """What fuzzing found, and what it keeps as a beginning, goes through every target again."""
 
+import json
 import resource
 import runpy
 import subprocess
@@ -71,6 +72,65 @@ def test_a_megabyte_of_anything_is_refused_with_a_place_in_less_than_a_gigabyte(
 
     done = subprocess.run(
         [sys.executable, "-c", READ_SEVERAL, *map(str, sorted(tmp_path.iterdir()))],
+        capture_output=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (GIGABYTE, GIGABYTE)),
+    )
+
+    assert done.returncode == 0, done.stderr.decode()[-2000:]
+
+
+TASKS = [f"t{number}" for number in range(4000)]
+GOLDEN = HERE.parent / "integration" / "data" / "golden.trace.jsonl"
+HEADER = GOLDEN.read_text(encoding="utf-8").splitlines(keepends=True)[0]
+SWEEP = "sweep: {base: {network: {type: line, nodes: 2}, dags: {type: chain, tasks: 2}}, vary: "
+
+
+def workflow_of(**task):
+    rows = [{"id": each, "parents": [], **task} for each in TASKS]
+    specification = {"tasks": rows, "files": [{"id": "f", "sizeInBytes": 1}]}
+    measured = [{"id": each, "runtimeInSeconds": 1} for each in TASKS]
+    return json.dumps(
+        {"workflow": {"specification": specification, "execution": {"tasks": measured}}}
+    )
+
+
+def injection(tasks, edges):
+    rows = {"tasks": tasks, "edges": edges}
+    return HEADER + json.dumps({"t": 0, "k": "inject", "d": 0, "dag": "x", "i0": 0, "x0": 0} | rows)
+
+
+HEAVY = [
+    ("workflow", workflow_of(parents=[f"no{number}" for number in range(8)])),
+    ("workflow", workflow_of(inputFiles=["f"], outputFiles=["f"])),
+    ("trace", injection([["a", 1.0]] * (MEGABYTE // 12), [])),
+    ("trace", injection([["a", 1.0]] * 2, [[0, 1, 1.0]] * (MEGABYTE // 13))),
+    ("sweep", f"{SWEEP}{{{', '.join(f'rf.x{number}: [1]' for number in range(50_000))}}}}}"),
+    ("sweep", f"{SWEEP}{{rf.tx_power_dBm: [{', '.join(map(str, range(150_000)))}]}}}}"),
+    ("settings", "a=1\n" * (MEGABYTE // 4)),
+    ("posted", json.dumps({"yaml": "a: [\n" * (MEGABYTE // 6)})),
+    ("study", json.dumps({"plan": [["x", "y", "{}" * 100_000, 1, 1]], "member": [], "result": []})),
+    *(
+        (name, "[" * MEGABYTE)
+        for name in ("workflow", "trace", "sweep", "settings", "posted", "page")
+    ),
+]
+USE_SEVERAL = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from targets import TARGETS
+for path in map(Path, sys.argv[2:]):
+    TARGETS[path.suffix[1:]](path.read_bytes())
+"""
+
+
+def test_a_megabyte_of_anything_that_is_read_takes_less_than_a_gigabyte(tmp_path):
+    for number, (name, text) in enumerate(HEAVY):
+        (tmp_path / f"{number}.{name}").write_text(text, encoding="utf-8")
+
+    done = subprocess.run(
+        [sys.executable, "-c", USE_SEVERAL, str(HERE), *map(str, sorted(tmp_path.iterdir()))],
         capture_output=True,
         check=False,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (GIGABYTE, GIGABYTE)),
