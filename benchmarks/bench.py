@@ -112,6 +112,10 @@ def _long_lines() -> Iterator[Line]:
         command = ("memory_by_size.py", "one", case)
         each = r"\| (\d+) \| \d+ \| [\d.]+ \|$"
         yield Line(f"memory: {case}, per event", command, each, unit="bytes", is_long=True)
+    for model in ("none", "csma_bianchi"):
+        name = f"memory: 2,000 nodes, 10,000 tasks, {model}"
+        command = ("memory.py", "large", model)
+        yield Line(name, command, r"peak (\d+) MB", unit="MB", is_long=True)
     name = "sweep: 10,000 runs of 3x3 x 5, wall clock, two workers"
     yield Line(name, ("sweep.py",), r"runs in ([\d.]+) s", 60, is_long=True)
 
