@@ -42,5 +42,5 @@ def visits_per_packet(success: FloatArray) -> FloatArray:
         success: Probability that an attempt succeeds, by stage, shape (..., 7).
     """
     visits = np.ones_like(success)
-    np.cumprod(1.0 - success[..., :-1], axis=-1, out=visits[..., 1:])
+    np.multiply.accumulate(1.0 - success[..., :-1], axis=-1, out=visits[..., 1:])
     return visits

@@ -53,5 +53,5 @@ def base_success(
     if not scene.settings.terms.same_slot_collisions:
         return np.where(scene.is_alive, np.exp(-noise_hazard), 0.0)
     meets = (same_slot * scene.hears_by_power)[scene.station]  # others by CTS: see losses
-    survivors = (1.0 - meets * loss).prod(axis=1)
+    survivors = np.multiply.reduce(1.0 - meets * loss, axis=1)
     return np.where(scene.is_alive, np.exp(-noise_hazard) * survivors, 0.0)

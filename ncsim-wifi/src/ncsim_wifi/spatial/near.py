@@ -91,7 +91,7 @@ def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
     if not settings.terms.far_noise:
         far_mW[:] = 0.0
     else:
-        noise_mW += far_mW @ far_activity(scene.senses.sum(axis=1).astype(np.float64))
+        noise_mW += far_mW @ far_activity(scene.degree)
     if not settings.terms.hidden_loss:
         harm[:] = 0.0
     near_station = np.where(near_mW > 0.0, order, NOBODY)

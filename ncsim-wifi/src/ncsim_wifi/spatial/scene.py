@@ -169,6 +169,21 @@ class Scene:
         ratio_dB = power_dBm[self.station] - self.settings.noise_dBm
         return np.asarray(hazard(self.scheme[:, None], ratio_dB) < MAX_HAZARD_TO_DECODE)
 
+    @cached_property
+    def hears_as_number(self) -> FloatArray:
+        """Return ``hears_receiver`` as 0 and 1."""
+        return self.hears_receiver.astype(np.float64)
+
+    @cached_property
+    def decodes_as_number(self) -> FloatArray:
+        """Return ``decodes`` as 0 and 1."""
+        return self.decodes.astype(np.float64)
+
+    @cached_property
+    def degree(self) -> FloatArray:
+        """Return how many stations each one senses."""
+        return np.asarray(self.senses.sum(axis=1), np.float64)
+
     def ratio_dB(self, interference_mW: FloatArray, links: IntArray) -> FloatArray:
         """Return signal to interference, noise included in the latter, of some links."""
         return self.signal_dBm[links] - dBm_from_mW(interference_mW)

@@ -61,18 +61,19 @@ def silence_of(
     per_link_us = silence_us(
         scene.overhead_us[:, None],
         missed,
-        hears=scene.hears_receiver.astype(np.float64),
-        decodes=scene.decodes.astype(np.float64),
+        hears=scene.hears_as_number,
+        decodes=scene.decodes_as_number,
     )
-    answered = answered[:, None]
-    per_link_us = answered * per_link_us + (1.0 - answered) * (NAV_TIMEOUT_us + AIFS_us)
+    if scene.settings.rts_cts:
+        part = answered[:, None]
+        per_link_us = part * per_link_us + (1.0 - part) * (NAV_TIMEOUT_us + AIFS_us)
     own = scene.link_of_station * attempts
-    overhead_us = own @ scene.overhead_us
+    overhead_us = scene.station_sums(attempts * scene.overhead_us)
     if not scene.settings.terms.silence:
         return Silence(overhead_us, np.zeros_like(clear))
     per_station_us = own @ per_link_us
-    degree = scene.senses.sum(axis=1)
-    sums_us = (per_station_us * scene.senses).sum(axis=1)
-    mean_us = np.where(degree > 0, sums_us / np.maximum(degree, 1), overhead_us)
+    degree = scene.degree
+    sums_us = np.add.reduce(per_station_us * scene.senses, axis=1)
+    mean_us = np.where(degree > 0.0, sums_us / np.maximum(degree, 1.0), overhead_us)
     deviation_us = EIFS_WEIGHT * (per_station_us - mean_us[:, None]) * scene.senses
     return Silence(mean_us, deviation_us)

@@ -192,4 +192,4 @@ class _Coupled:
         """Return alpha, for how much of the time each station has something to send."""
         part = np.where(able_MBps > 0.0, load_MBps / np.maximum(able_MBps, 1e-300), 1.0)
         stations = np.bincount(self._scene.station, part, minlength=self._scene.station_count)
-        return np.clip(stations, LEAST_BUSY, 1.0)
+        return np.minimum(np.maximum(stations, LEAST_BUSY), 1.0)
