@@ -109,6 +109,29 @@ def test_rts_that_collide_with_each_other_harm_no_data():
     assert not partners(rts_cts=True)
 
 
+def test_data_collide_where_both_rts_are_captured():
+    """Seen in frame logs of ns-3.44: both are answered, and both send."""
+
+    def lost(other_receiver_m):
+        ends_m = [(10.0, 0.0), other_receiver_m]
+        scene = scene_of(plant([(0, 0), (45, 0)], ends_m, rts_cts=True), range(2))
+        return statics_of(scene).same_slot_loss[0, 1]
+
+    assert 0.3 < lost((75.0, 0.0)) < 0.6  # data at 16 dB
+    assert lost((27.0, 0.0)) == 0.0  # the other RTS is not answered
+
+
+def test_receivers_that_hear_the_handshake_send_no_acknowledgement_into_the_data():
+    senders_m, receivers_m = [(0, 0), (120, 0)], [(20, 0), (70, 0)]
+
+    def harmed(*, rts_cts):
+        scene = scene_of(plant(senders_m, receivers_m, rts_cts=rts_cts), range(2))
+        return statics_of(scene).acks.link.tolist()
+
+    assert 0 in harmed(rts_cts=False)
+    assert 0 not in harmed(rts_cts=True)
+
+
 def test_an_rts_that_is_captured_does_not_mind_a_later_start():
     def fatal_us(receiver_m):
         scene = scene_of(plant([(0, 0), (95, 0)], [receiver_m, (110, 0)], rts_cts=True), range(2))

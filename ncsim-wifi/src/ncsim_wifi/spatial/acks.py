@@ -49,12 +49,30 @@ def ack_relations(scene: Scene, hazards: FloatArray, is_hidden: BoolArray) -> Ac
         is_hidden: hid[w, l], shape (stations, links).
     """
     counts = is_hidden[scene.station].T & (hazards > LEAST_HAZARD)
+    if scene.settings.rts_cts:
+        counts &= ~kept_from_answering(scene)
     if not scene.settings.terms.ack_loss:
         counts[:] = False
     link, other = np.nonzero(counts)
     part = scene.ack_us[other] / scene.protected_us[link]
     kill = -np.expm1(-hazards[link, other] * part)
     return AckRelations(link, other, scene.settings.approximations.ack_weight * kill)
+
+
+def kept_from_answering(scene: Scene) -> BoolArray:
+    """Return whose receivers answer nobody during the data of which links, under RTS/CTS.
+
+    They hear the RTS or the CTS that precede them, and defer (NAV).
+
+    Source: 802.11-2020, 10.3.2.4 and 10.3.2.9.
+
+    Returns:
+        Shape (links that send data, links that would be answered).
+    """
+    heard_mW = 10.0 ** (scene.settings.preamble_dBm / 10.0)
+    hears_rts = scene.at_receiver_mW[scene.station] >= heard_mW
+    hears_cts = scene.receiver_at_receiver_mW >= heard_mW
+    return np.asarray(hears_rts | hears_cts)
 
 
 def ack_survival(expected: FloatArray, kill: FloatArray) -> FloatArray:

@@ -14,6 +14,8 @@ from ncsim_wifi.spatial.scene import Scene
 def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
     """Return sync[l, w], the loss of a frame of link l when w starts in the same slot.
 
+    If both RTS are captured, both are answered, and the data collide as a whole.
+
     Source: MODEL 2.
 
     Args:
@@ -21,7 +23,10 @@ def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
         noise_mW: Noise and far interferers of each link.
     """
     if scene.settings.rts_cts:
-        return np.where(_ratio_dB(scene, noise_mW) < RTS_RATIO_dB, 1.0, 0.0)
+        captured = _ratio_dB(scene, noise_mW) >= RTS_RATIO_dB
+        of_station = scene.link_of_station / scene.link_of_station.sum(axis=1, keepdims=True)
+        other_too = (of_station @ captured).T[scene.station]
+        return np.where(captured, other_too * payload_loss(scene, noise_mW), 1.0)
     return payload_loss(scene, noise_mW)
 
 
