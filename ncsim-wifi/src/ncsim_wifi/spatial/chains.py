@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.sums import row_sums
 
@@ -186,3 +186,30 @@ def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:
     top[0] += rates.common[last, last] * spread[last, last]
     inflow[STAGES:] = side[1:]
     return inflow
+
+
+class Given(NamedTuple):
+    """What is known of the stages of the other side.
+
+    Args:
+        alone: Time-weighted stages of the interferer of each relation, for want of a chain.
+        relation: The relations that have one.
+        stages: P(b | a) of these, shape (some relations, 7, 7).
+    """
+
+    alone: FloatArray
+    relation: IntArray
+    stages: FloatArray
+
+
+def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
+    """Return the mean over the stages b of the other side, given a, shape (relations, 7).
+
+    Args:
+        given: How likely they are.
+        by_stage: What is averaged, by b, shape (relations, 7).
+    """
+    result = np.empty_like(by_stage)
+    result[:] = row_sums(given.alone * by_stage)[:, None]
+    result[given.relation] = row_sums(given.stages * by_stage[given.relation][:, None, :])
+    return result

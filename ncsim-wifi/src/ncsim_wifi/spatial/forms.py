@@ -32,6 +32,7 @@ class Forms(NamedTuple):
     attempts_of: Callable[[attempts.Contenders, attempts.Exchange], attempts.Attempts]
     survival: Callable[[gaps.Interferers, gaps.Windows], gaps.Survival]
     joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
+    stage_means: Callable[[chains.Given, FloatArray], FloatArray]
     silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
     exact_occupancy: Callable[[occupancy.SetTable, FloatArray], occupancy.Occupancy]
     helped_kill: Callable[
@@ -43,6 +44,7 @@ ARRAYS: Final = Forms(
     attempts.attempts_of,
     gaps.survival,
     chains.joint_stages,
+    chains.stage_means,
     energy.silenced_by,
     occupancy.exact_occupancy,
     overlap.helped_kill,

@@ -3,17 +3,16 @@
 Source: MODEL 3.9 and 3.10.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.chains import SideRates
+from ncsim_wifi.spatial.chains import Given, SideRates
+from ncsim_wifi.spatial.forms import Forms
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.sums import row_sums
 
 
 class RelationRates(NamedTuple):
@@ -42,10 +41,11 @@ class JointStages:
     Args:
         scene: The active links.
         hostile: Hidden relations.
+        forms: How chains are solved.
     """
 
-    def __init__(self, scene: Scene, hostile: Hostile) -> None:
-        self._scene = scene
+    def __init__(self, scene: Scene, hostile: Hostile, forms: Forms) -> None:
+        self._scene, self._forms = scene, forms
         self._hostile = hostile
         own = scene.station[hostile.link]
         hurts = np.zeros((scene.station_count, scene.station_count), np.bool_)
@@ -58,7 +58,8 @@ class JointStages:
         self.side: IntArray = side_of[own, hostile.station]
         self._station = np.concatenate([one, two])
         self._relations = np.flatnonzero(self.side >= 0)
-        self._given: FloatArray | None = None
+        self._has_one_each = len(self._relations) == 2 * self.count
+        self._known = np.zeros(0, np.int64), np.zeros((0, STAGES, STAGES))
 
     def expected(self, alone: FloatArray, by_stage: FloatArray) -> FloatArray:
         """Return the mean over the stages b of the other, P(b | a), shape (relations, 7).
@@ -67,12 +68,7 @@ class JointStages:
             alone: Time-weighted stages of the interferer of each relation, for want of a chain.
             by_stage: What is averaged, by b, shape (relations, 7).
         """
-        result = np.empty_like(by_stage)
-        result[:] = row_sums(alone * by_stage)[:, None]
-        if self._given is not None:
-            some = self._relations
-            result[some] = row_sums(self._given * by_stage[some][:, None, :])
-        return result
+        return self._forms.stage_means(Given(alone, *self._known), by_stage)
 
     def update(
         self,
@@ -81,7 +77,6 @@ class JointStages:
         own_part: FloatArray,
         relation: RelationRates,
         cycle_us: FloatArray,
-        joint_stages: Callable[[SideRates, SideRates], FloatArray],
     ) -> None:
         """Solve the chains anew.
 
@@ -91,7 +86,6 @@ class JointStages:
             own_part: sbar_r(a), what of it is due to each relation.
             relation: What each relation does.
             cycle_us: cyc_u(k) of each station.
-            joint_stages: Solves the chains.
         """
         if not self.count:
             return
@@ -99,10 +93,10 @@ class JointStages:
         half = self.count
         cycles_us = cycle_us[self._station]
         one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
-        joint = joint_stages(one, two)
+        joint = self._forms.joint_stages(one, two)
         both = np.concatenate([joint, joint.transpose(0, 2, 1)])
         both /= np.maximum(np.add.reduce(both, axis=2, keepdims=True), 1e-300)
-        self._given = both[self.side[self._relations]]
+        self._known = self._relations, both[self.side[self._relations]]
 
     def _sides(
         self,
@@ -119,16 +113,24 @@ class JointStages:
         shape = (2 * self.count, STAGES)
         survives, hit, share, grows = np.ones(shape), *np.zeros((3, *shape))
         hurt = np.zeros((2 * self.count, 1))
-        np.add.at(hurt, side, weight)
-        np.add.at(survives, side, weight * (survives_r - 1.0))
-        np.add.at(hit, side, weight * hit_r)
-        np.add.at(share, side, weight * share_r)
-        np.add.at(grows, side, weight * grows_r)
+        self._add(hurt, side, weight)
+        self._add(survives, side, weight * (survives_r - 1.0))
+        self._add(hit, side, weight * hit_r)
+        self._add(share, side, weight * share_r)
+        self._add(grows, side, weight * grows_r)
         per_station = (self._scene.link_of_station * attempts) @ total
         other = per_station[self._station]
         rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
-        np.add.at(other, side, weight * (rest - total[link]))
-        return survives, hit, share / hurt, np.clip(other, 0.0, 1.0), grows / hurt
+        self._add(other, side, weight * (rest - total[link]))
+        other = np.minimum(np.maximum(other, 0.0), 1.0)
+        return survives, hit, share / hurt, other, grows / hurt
+
+    def _add(self, target: FloatArray, side: IntArray, values: FloatArray) -> None:
+        """Add what relations contribute to their sides."""
+        if self._has_one_each:
+            target[side] += values
+        else:
+            np.add.at(target, side, values)
 
 
 def _side(sides: RawSides, cycles_us: FloatArray, part: slice) -> SideRates:

@@ -71,7 +71,7 @@ class FixedPoint:
     def __init__(self, scene: Scene, forms: Forms = ARRAYS) -> None:
         self._scene, self._forms = scene, forms
         self._statics: Statics = statics_of(scene)
-        self._joint = JointStages(scene, self._statics.hostile)
+        self._joint = JointStages(scene, self._statics.hostile, forms)
         links, stations = len(scene.links), scene.station_count
         self._stages = np.zeros((stations, STAGES))
         self._stages[:, 0] = 1.0
@@ -210,7 +210,6 @@ class FixedPoint:
                     parts,
                     RelationRates(hidden.survives, hidden.hit, hidden.share, hidden.grows),
                     traffic.cycle_us,
-                    self._forms.joint_stages,
                 )
                 success, _ = self._success(base, hidden, hidden.survives, hidden.grows)
                 self._learn_eagerness(traffic, hidden)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.chains import BOUNDARY, SideRates
+from ncsim_wifi.spatial.chains import BOUNDARY, Given, SideRates
 from ncsim_wifi.spatial.compiled.compiling import inlined
 
 LAST = STAGES - 1
@@ -161,3 +161,23 @@ def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray, chain: i
     for a in range(STAGES):
         for b in range(STAGES):
             joint[chain, a, b] /= total
+
+
+@inlined
+def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
+    """Return the mean over the stages b of the other side, given a, shape (relations, 7)."""
+    result = np.empty(by_stage.shape)
+    for at in range(len(by_stage)):
+        mean = 0.0
+        for b in range(STAGES):
+            mean = mean + given.alone[at, b] * by_stage[at, b]
+        for a in range(STAGES):
+            result[at, a] = mean
+    for place in range(len(given.relation)):
+        at = given.relation[place]
+        for a in range(STAGES):
+            mean = 0.0
+            for b in range(STAGES):
+                mean = mean + given.stages[place, a, b] * by_stage[at, b]
+            result[at, a] = mean
+    return result

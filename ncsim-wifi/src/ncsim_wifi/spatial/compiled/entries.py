@@ -9,7 +9,7 @@ from typing import Final
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
-from ncsim_wifi.spatial.chains import SideRates
+from ncsim_wifi.spatial.chains import Given, SideRates
 from ncsim_wifi.spatial.compiled import attempts, chains, energy, gaps, occupancy, overlap
 from ncsim_wifi.spatial.compiled.compiling import kept_on_disk
 from ncsim_wifi.spatial.energy import Silenced, Silencing
@@ -38,6 +38,10 @@ def loops_of(sources: str) -> Forms:
         assert sources
         return chains.joint_stages(one, two)
 
+    def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
+        assert sources
+        return chains.stage_means(given, by_stage)
+
     def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
         assert sources
         return energy.silenced_by(tables, on)
@@ -60,6 +64,7 @@ def loops_of(sources: str) -> Forms:
         kept_on_disk(attempts_of),
         kept_on_disk(survival),
         kept_on_disk(joint_stages),
+        kept_on_disk(stage_means),
         kept_on_disk(silenced_by),
         kept_on_disk(exact_occupancy),
         kept_on_disk(helped_kill),
