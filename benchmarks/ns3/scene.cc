@@ -9,7 +9,10 @@
 //
 // Input, numbers apart by white space: RTS/CTS (0 or 1), seed, seconds; number of nodes, their x and
 // y in metres; number of transfers, for each its MCS, the number of its nodes, and these nodes.
-// Output, a line per transfer: MB/s of payload.
+// Output, a line per transfer: MB/s of payload. With a file's name as argument it also gets a line
+// per frame sent, T, its start and duration in us, sender, kind and receiver; per frame lost at its
+// receiver, D, the time in us, receiver, sender and why; per data frame acknowledged, A, the time,
+// sender and receiver.
 //
 // A transfer of one hop keeps 30 packets queued at its sender, a relayed one 16 in the network. All
 // transfers that pass a node must have one MCS.
@@ -22,8 +25,12 @@
 #include "ns3/wifi-mac.h"
 #include "ns3/wifi-mpdu.h"
 #include "ns3/wifi-net-device.h"
+#include "ns3/wifi-phy.h"
+#include "ns3/wifi-ppdu.h"
+#include "ns3/wifi-psdu.h"
 #include "ns3/yans-wifi-helper.h"
 
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <string>
@@ -81,6 +88,64 @@ void Done(int node, Ptr<const WifiMpdu> mpdu) {
     int number = udp.GetDestinationPort() - FIRST_PORT;
     if (!transfers[number].IsRelayed() && transfers[number].path.front() == node) {
         Simulator::ScheduleNow(&SendOne, number);
+    }
+}
+
+std::ofstream frames;
+std::map<Mac48Address, int> node_of;
+
+double Now_us() { return Simulator::Now().GetNanoSeconds() / 1000.0; }
+
+std::string KindOf(const WifiMacHeader& header) {
+    return header.IsQosData() ? "data"
+           : header.IsAck()   ? "ack"
+           : header.IsRts()   ? "rts"
+           : header.IsCts()   ? "cts"
+                              : "other";
+}
+
+void Sent(int node, WifiConstPsduMap psdus, WifiTxVector vector, double) {
+    auto psdu = psdus.begin()->second;
+    auto& header = psdu->GetHeader(0);
+    auto lasts = WifiPhy::CalculateTxDuration(psdu->GetSize(), vector, WIFI_PHY_BAND_5GHZ);
+    frames << "T " << Now_us() << ' ' << lasts.GetNanoSeconds() / 1000.0 << ' ' << node << ' '
+           << KindOf(header) << ' ' << node_of[header.GetAddr1()] << '\n';
+}
+
+void Lost(int node, Ptr<const WifiPpdu> ppdu, WifiPhyRxfailureReason reason) {
+    auto& header = ppdu->GetPsdu()->GetHeader(0);
+    if (header.IsAck() || header.IsCts() || node_of[header.GetAddr1()] != node) {
+        return;
+    }
+    frames << "D " << Now_us() << ' ' << node << ' ' << node_of[header.GetAddr2()] << ' ' << reason
+           << '\n';
+}
+
+void Acknowledged(int node, Ptr<const WifiMpdu> mpdu) {
+    frames << "A " << Now_us() << ' ' << node << ' ' << node_of[mpdu->GetHeader().GetAddr1()]
+           << '\n';
+}
+
+void LogFrames(const std::string& file, NetDeviceContainer& devices) {
+    frames.open(file);
+    frames.precision(12);
+    for (uint32_t node = 0; node < devices.GetN(); node++) {
+        auto device = DynamicCast<WifiNetDevice>(devices.Get(node));
+        node_of[device->GetMac()->GetAddress()] = node;
+        device->GetPhy()->TraceConnectWithoutContext(
+            "PhyTxPsduBegin",
+            Callback<void, WifiConstPsduMap, WifiTxVector, double>(
+                [node](WifiConstPsduMap psdus, WifiTxVector vector, double power_W) {
+                    Sent(node, psdus, vector, power_W);
+                }));
+        device->GetPhy()->TraceConnectWithoutContext(
+            "PhyRxPpduDrop", Callback<void, Ptr<const WifiPpdu>, WifiPhyRxfailureReason>(
+                                 [node](Ptr<const WifiPpdu> ppdu, WifiPhyRxfailureReason reason) {
+                                     Lost(node, ppdu, reason);
+                                 }));
+        device->GetMac()->TraceConnectWithoutContext(
+            "AckedMpdu", Callback<void, Ptr<const WifiMpdu>>(
+                             [node](Ptr<const WifiMpdu> mpdu) { Acknowledged(node, mpdu); }));
     }
 }
 
@@ -160,7 +225,7 @@ void Start(int number, NodeContainer& nodes, Ipv4InterfaceContainer& interfaces,
     }
 }
 
-int main() {
+int main(int argument_count, char** arguments) {
     int rts_cts, seed, node_count, transfer_count;
     double duration_s;
     std::cin >> rts_cts >> seed >> duration_s >> node_count;
@@ -203,6 +268,9 @@ int main() {
             "DroppedMpdu",
             Callback<void, WifiMacDropReason, Ptr<const WifiMpdu>>(
                 [node](WifiMacDropReason, Ptr<const WifiMpdu> mpdu) { Done(node, mpdu); }));
+    }
+    if (argument_count > 1) {
+        LogFrames(arguments[1], devices);
     }
     auto offsets = CreateObject<UniformRandomVariable>();
     for (int number = 0; number < transfer_count; number++) {

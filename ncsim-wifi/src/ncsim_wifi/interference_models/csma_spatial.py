@@ -31,6 +31,7 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
     hidden_loss: bool = True,
     joint_interference: bool = True,
     joint_chains: bool = True,
+    helpers_by_stage: bool = True,
     ack_loss: bool = True,
     silence: bool = True,
     energy_sensing: bool = True,
@@ -46,6 +47,7 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
         hidden_loss: Stations that do not sense each other destroy frames.
         joint_interference: Several weak interferers act together.
         joint_chains: Back-off stages of two stations that hurt each other are correlated.
+        helpers_by_stage: So is how active those are that harm a third together.
         ack_loss: Acknowledgements of hidden links destroy frames.
         silence: Who does not understand a frame waits another time after it.
         energy_sensing: Stations too weak to be sensed alone are sensed together.
@@ -60,14 +62,15 @@ def csma_spatial(  # noqa: PLR0913 - one keyword per term that can be left out
     """
     radio = Radio.from_section(context.section("rf"))
     terms = Terms(
-        same_slot_collisions,
-        hidden_loss,
-        joint_interference,
-        joint_chains,
-        ack_loss,
-        silence,
-        energy_sensing,
-        far_noise,
+        same_slot_collisions=same_slot_collisions,
+        hidden_loss=hidden_loss,
+        joint_interference=joint_interference,
+        joint_chains=joint_chains,
+        helpers_by_stage=helpers_by_stage,
+        ack_loss=ack_loss,
+        silence=silence,
+        energy_sensing=energy_sensing,
+        far_noise=far_noise,
         dead_below_threshold=simulator_artefacts,
         lost_signal_field=simulator_artefacts,
     )
