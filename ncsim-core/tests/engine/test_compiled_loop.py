@@ -17,7 +17,7 @@ from ncsim_core.api import result_of
 from ncsim_core.contracts.scheduler import Scheduler
 from ncsim_core.engine import looping
 from ncsim_core.engine import simulation as simulation_module
-from ncsim_core.engine.compiled import telling
+from ncsim_core.engine.compiled import radio_loading, telling
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.outcome import RunStatus
 from ncsim_core.engine.setup import Limits
@@ -93,14 +93,20 @@ def picture_of_transfer(flow):
 
 
 @settings(max_examples=5_000 if IS_NIGHTLY else 200, suppress_health_check=[*HealthCheck])
-@given(engine_cases(is_compilable=True), st.sampled_from((1, 3, 4096)), st.sampled_from((0, 9999)))
-def test_runs_and_traces_are_equal_to_the_last_bit(case, events_kept, rates_kept):
+@given(
+    case=engine_cases(is_compilable=True),
+    events_kept=st.sampled_from((1, 3, 4096)),
+    rates_kept=st.sampled_from((0, 9999)),
+    matrix_links=st.sampled_from((0, 2500)),
+)
+def test_runs_and_traces_are_equal_to_the_last_bit(case, events_kept, rates_kept, matrix_links):
     traces = io.StringIO(), io.StringIO()
     python, seen_in_python = simulation_of(case, TraceWriter(traces[0]))
     compiled, seen = simulation_of(case, TraceWriter(traces[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(telling, "EVENTS_KEPT", events_kept)
         patch.setattr(telling, "RATES_KEPT", rates_kept)
+        patch.setattr(radio_loading, "MAX_LINKS_OF_MATRIX", matrix_links)
 
         outcome = compiled.run()
 

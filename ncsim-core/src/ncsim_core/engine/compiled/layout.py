@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from ncsim_core.engine.compiled.compiling import Record, inlined, reader
+from ncsim_core.engine.compiled.compiling import Record, inlined, reader, vector_reader
 
 NONE: Final = -1
 NOT_YET: Final = -1
@@ -46,7 +46,7 @@ NODE: Final = _dtype(f8="capacity", i8="task waiting first_waiting last_waiting"
 ENTRY: Final = _dtype(i8="at_us order number")
 MOVE: Final = _dtype(f8="rate_MBps", i8="transfer bottleneck")
 NUMBER: Final = _dtype(i8="number")
-WINDOW: Final = _dtype(i8="load mask start", u8="width")
+WINDOW: Final = _dtype(i8="mask start", u8="width")
 LEVEL: Final = _dtype(i8="limit share_row is_constant")
 
 ARRAYS: Final = {
@@ -61,7 +61,9 @@ ARRAYS: Final = {
     "switched": NUMBER,  # links that one change has switched
     "affected": NUMBER,  # transfers that it makes the engine look at
     "moves": MOVE,  # those whose rate moves
+    "loads": NUMBER,  # by link
     "windows": WINDOW,  # by link
+    "matrix": NUMBER,  # what links add to loads, row by row; empty for large networks
     "changed": NUMBER,  # links whose factor has changed
     "rows": NUMBER,  # by link, where the links begin that it affects
     "affected_links": _dtype(i4="link"),
@@ -78,7 +80,7 @@ STATE: Final = _dtype(
     i8="now_us events unfinished_tasks last_task_end_us last_us max_events "
     "due_us due_kind due_number entries tickets flows refreshes refreshing is_stalled "
     "hop_count created_count affected_count moves_count "
-    "has_radio link_count level_count share_count count_shift looked_up changed_count "
+    "has_radio has_matrix link_count level_count share_count count_shift looked_up changed_count "
     "is_watched shows_rates happened_count happened_most assigned_count assigned_most "
     + " ".join(ARRAYS),
 )
@@ -106,6 +108,7 @@ entry_at: Final = array_at("queue")
 switched_at: Final = array_at("switched")
 affected_at: Final = array_at("affected")
 move_at: Final = array_at("moves")
+load_at: Final = array_at("loads")
 window_at: Final = array_at("windows")
 changed_at: Final = array_at("changed")
 row_at: Final = array_at("rows")
@@ -116,3 +119,4 @@ level_at: Final = array_at("levels")
 share_at: Final = array_at("shares")
 happened_at: Final = array_at("happened")
 assigned_at: Final = array_at("assigned")
+vector_at: Final = vector_reader()

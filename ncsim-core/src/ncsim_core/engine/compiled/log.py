@@ -1,7 +1,7 @@
 """What happened, for observers who are told later."""
 
 from ncsim_core.engine.compiled.compiling import Record, inlined
-from ncsim_core.engine.compiled.layout import assigned_at, happened_at, link_at, move_at, window_at
+from ncsim_core.engine.compiled.layout import assigned_at, happened_at, link_at, load_at, move_at
 from ncsim_core.engine.compiled.radio import level_of
 
 
@@ -31,7 +31,7 @@ def log_rates(state: Record) -> None:
         entry.bottleneck, entry.flows = move.bottleneck, link_at(move.bottleneck, state).flows
         if state.has_radio:
             link = move.bottleneck
-            entry.contenders = window_at(link, state).load >> state.count_shift
+            entry.contenders = load_at(link, state).number >> state.count_shift
             entry.hidden = link_at(link, state).heard - entry.contenders
             entry.level = level_of(link, state)
         state.assigned_count += 1

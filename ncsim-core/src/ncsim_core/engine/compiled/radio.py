@@ -18,9 +18,11 @@ from ncsim_core.engine.compiled.layout import (
     hidden_at,
     level_at,
     link_at,
+    load_at,
     row_at,
     share_at,
     switched_at,
+    vector_at,
     window_at,
 )
 
@@ -38,7 +40,6 @@ def switch_links(count: int, sign: int, state: Record) -> None:
         sign: 1 if they become active, -1 if idle.
         state: Changed.
     """
-    contender = 1 << state.count_shift
     for k in range(count):
         link = switched_at(k, state).number
         window = window_at(link, state)
@@ -46,13 +47,36 @@ def switch_links(count: int, sign: int, state: Record) -> None:
             window.mask, window.start, window.width = ALL_BITS, NOTHING, 0
         else:
             window.width = ANYTHING
-        for at in range(row_at(link, state).number, row_at(link + 1, state).number):
-            is_conflict = conflict_at(at, state).is_conflict
-            increment = contender if is_conflict else hidden_at(at, state).units
-            window_at(affected_link_at(at, state).link, state).load += sign * increment
+        if state.has_matrix:
+            add_row(link, sign, state)
+        else:
+            add_entries(link, sign, state)
     state.looked_up = state.changed_count = 0
     if state.shows_rates:
         switch_heard(count, sign, state)
+
+
+@inlined
+def add_row(link: int, sign: int, state: Record) -> None:
+    """Add what a link does to the loads of all: many at a time, those of no effect too."""
+    count = state.link_count
+    loads = vector_at(state.loads, count)
+    row = vector_at(state.matrix + link * count * 8, count)
+    if sign > 0:
+        for other in range(count):
+            loads[other] += row[other]
+    else:
+        for other in range(count):
+            loads[other] -= row[other]
+
+
+@inlined
+def add_entries(link: int, sign: int, state: Record) -> None:
+    """Add what a link does to the loads of those that it affects."""
+    contender = 1 << state.count_shift
+    for at in range(row_at(link, state).number, row_at(link + 1, state).number):
+        increment = contender if conflict_at(at, state).is_conflict else hidden_at(at, state).units
+        load_at(affected_link_at(at, state).link, state).number += sign * increment
 
 
 @inlined
@@ -72,7 +96,7 @@ def look_up(state: Record) -> bool:
     """
     for link in range(state.looked_up, state.link_count):
         window = window_at(link, state)
-        offset = (window.load & window.mask) - window.start
+        offset = (load_at(link, state).number & window.mask) - window.start
         if np.uint64(offset) <= window.width:  # below the window it is huge
             continue
         level = level_of(link, state)
@@ -92,7 +116,7 @@ def look_up(state: Record) -> bool:
 @inlined
 def level_of(link: int, state: Record) -> int:
     """Return the level of a link."""
-    units = window_at(link, state).load & ((1 << state.count_shift) - 1)
+    units = load_at(link, state).number & ((1 << state.count_shift) - 1)
     level = 0
     while level_at(link * state.level_count + level, state).limit < units:
         level += 1
@@ -102,7 +126,7 @@ def level_of(link: int, state: Record) -> int:
 @inlined
 def share_of(link: int, level: int, state: Record) -> float:
     """Return the factor of a link; not a number where it has not been worked out yet."""
-    stations = (window_at(link, state).load >> state.count_shift) + 1
+    stations = (load_at(link, state).number >> state.count_shift) + 1
     row = level_at(link * state.level_count + level, state).share_row
     factor: float = share_at(row * state.share_count + stations, state).factor
     return factor
@@ -120,4 +144,4 @@ def open_window(link: int, level: int, state: Record) -> None:
     if at.is_constant:
         window.mask, window.start = units_mask, least
     else:
-        window.mask, window.start = ALL_BITS, (window.load & ~units_mask) + least
+        window.mask, window.start = ALL_BITS, (load_at(link, state).number & ~units_mask) + least

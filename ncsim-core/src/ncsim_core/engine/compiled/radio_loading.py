@@ -11,8 +11,10 @@ from ncsim_core.engine.compiled import layout
 from ncsim_core.engine.compiled.arrays import Arrays, records
 from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.radio import ANYTHING
+from ncsim_core.engine.sessions.array_session import MAX_LINKS_OF_MATRIX
 from ncsim_core.engine.sessions.loads import Loads
 
+NO_MATRIX = np.zeros((0, 0), np.int64)
 GREATEST = np.iinfo(np.int64).max
 
 
@@ -38,9 +40,11 @@ class Radio:
         self._arrays = arrays
         count, state = loads.tables.link_count, arrays.state
         arrays.put_all(self._prepared.arrays)
+        arrays.put("loads", np.zeros(count, np.int64))
         arrays.put("windows", records(count, layout.WINDOW, width=ANYTHING))
         arrays.put("changed", np.zeros(count, np.int64))
         state.has_radio, state.count_shift = 1, loads.count_shift
+        state.has_matrix = len(arrays["matrix"]) > 0
         state.link_count = state.looked_up = count
         state.level_count, state.share_count = self._prepared.level_count, _stations(loads)
 
@@ -48,7 +52,7 @@ class Radio:
         """Work out the share at which the loop stopped."""
         loads, state = self._loads, self._arrays.state
         link = int(state.looked_up)
-        load = int(self._arrays["windows"].load[link])
+        load = int(self._arrays["loads"][link])
         stations = (load >> loads.count_shift) + 1
         level = bisect_left(loads.tables.limits[link], load & loads.units_mask)
         row = int(self._arrays["levels"].share_row[link * state.level_count + level])
@@ -73,6 +77,7 @@ def _prepared(loads: Loads) -> _Prepared:
         "affected_links": np.ascontiguousarray(tables.links, np.int32),
         "conflicts": np.ascontiguousarray(tables.is_conflict, np.bool_),
         "hidden": np.ascontiguousarray(tables.hidden_units, np.int64),
+        "matrix": loads.matrix if tables.link_count <= MAX_LINKS_OF_MATRIX else NO_MATRIX,
         "levels": _levels(loads, rows, level_count),
         "shares": records(len(rows) * _stations(loads), layout.ARRAYS["shares"], factor=np.nan),
     }
