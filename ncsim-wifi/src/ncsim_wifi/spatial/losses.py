@@ -176,7 +176,7 @@ def hidden_loss(
     immune = np.exp(-hazard)
     kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
-    later = conditioned_on(statics.rivals, on, kill)
+    later = conditioned_on(statics.rivals.every, on, kill)
     state = _group_state(statics, traffic, later)
     met = _interferers(scene, statics, traffic, kill, state)
     windows = _windows(scene, statics, hazard, immune, gates)
@@ -250,7 +250,7 @@ def _correction(
 ) -> FloatArray:
     """Return prod_g max(1, (1 - sum A'' kd) / (1 - sum A' kd)) of each link (MODEL 3.9)."""
     hostile = statics.hostile
-    earlier = conditioned_on(statics.earlier_rivals, on, kill)
+    earlier = conditioned_on(statics.rivals.earlier, on, kill)
     sums = [
         np.minimum(LARGEST_ON, np.add.reduceat(each * kill, hostile.group_starts))
         for each in (earlier, later)

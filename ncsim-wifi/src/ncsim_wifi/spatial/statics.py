@@ -34,6 +34,13 @@ from ncsim_wifi.spatial.scene import Scene
 LETHAL_BURST = 0.5  # an RTS that kills the data that it meets; hardly ever in between
 
 
+class Rivals(NamedTuple):
+    """Pairs of relations: all, and those of which the second belongs to an earlier group."""
+
+    every: tuple[IntArray, IntArray]
+    earlier: tuple[IntArray, IntArray]
+
+
 class AnswersOf(NamedTuple):
     """The links of the interferer of each relation, relation by relation."""
 
@@ -51,7 +58,6 @@ class Statics:
         hostile: Hidden relations.
         own: The station that sends on the link of each relation.
         rivals: Which relations of a link are conditioned on which others.
-        earlier_rivals: The same, on relations of earlier groups only.
         window_us: V_r, the window in which an interferer must not begin.
         longest_us: The longest window that is asked about.
         alone_hazard: h(w) of each relation.
@@ -83,8 +89,7 @@ class Statics:
     occupancy: OccupancyModel
     hostile: Hostile
     own: IntArray
-    rivals: tuple[IntArray, IntArray]
-    earlier_rivals: tuple[IntArray, IntArray]
+    rivals: Rivals
     window_us: FloatArray
     longest_us: float
     alone_hazard: FloatArray
@@ -116,22 +121,19 @@ def statics_of(scene: Scene) -> Statics:
     is_hidden = ~scene.hears_by_power[:, scene.station] & ~scene.link_of_station
     near = near_interferers(scene, is_hidden)
     hostile = hostile_relations(scene, near)
-    energy = energy_sets(scene)
     hazards = ack_hazard(scene, near.noise_mW)
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
     fate = fate_of(scene, hostile, alone, RTS_RATIO_dB)
     fatal = fatal_slots(fate, scene.data_us[hostile.link])
     noticed_us = np.where(fate.captures, 0.0, CTS_NOTICED_us)
-    rivals, earlier_rivals = _rivals(scene, hostile)
     window_us = _windows_us(scene, hostile, noticed_us)
     return Statics(
         scene.senses.astype(np.float64),
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
         hostile,
         own,
-        rivals,
-        earlier_rivals,
+        _rivals(scene, hostile),
         window_us,
         max(window_us.max(initial=0.0), CTS_NOTICED_us),
         alone,
@@ -153,10 +155,16 @@ def statics_of(scene: Scene) -> Statics:
         AnswersOf(*np.nonzero(scene.link_of_station[hostile.station])),
         ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
         deaf_to_ack(scene),
-        energy,
-        silencing_of(scene, energy, hostile),
-        np.exp(-scene.data_us[hostile.link] / scene.settings.approximations.helper_cycle_us),
+        *_summed_power(scene, hostile),
     )
+
+
+def _summed_power(scene: Scene, hostile: Hostile) -> tuple[EnergySets, Silencing, FloatArray]:
+    """Return who is silenced by summed power, and how likely that ends within a frame."""
+    energy = energy_sets(scene)
+    lasts_us = scene.settings.approximations.helper_cycle_us
+    ends = np.exp(-scene.data_us[hostile.link] / lasts_us)
+    return energy, silencing_of(scene, energy, hostile), ends
 
 
 def _helped(scene: Scene, hostile: Hostile) -> Helped:
@@ -173,14 +181,8 @@ def _helped(scene: Scene, hostile: Hostile) -> Helped:
     )
 
 
-def _rivals(
-    scene: Scene, hostile: Hostile
-) -> tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray]]:
-    """Return pairs of relations of a link in different groups, the first sensing the second.
-
-    Returns:
-        All of them, and those of which the second belongs to an earlier group.
-    """
+def _rivals(scene: Scene, hostile: Hostile) -> Rivals:
+    """Return pairs of relations of a link in different groups, the first sensing the second."""
     starts = hostile.link_starts
     last = np.append(starts[1:], len(hostile))[np.searchsorted(hostile.links, hostile.link)]
     first = starts[np.searchsorted(hostile.links, hostile.link)]
@@ -191,7 +193,7 @@ def _rivals(
     counts &= hostile.group[one] != hostile.group[two]
     one, two = one[counts], two[counts]
     earlier = hostile.group[two] < hostile.group[one]
-    return (one, two), (one[earlier], two[earlier])
+    return Rivals((one, two), (one[earlier], two[earlier]))
 
 
 def _helper_relation(scene: Scene, hostile: Hostile) -> IntArray:

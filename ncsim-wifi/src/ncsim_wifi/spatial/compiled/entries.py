@@ -4,6 +4,7 @@ numba looks at the file of a function alone, and at the values that it encloses,
 it has kept is still good. So all are made here, and enclose what stands for their sources.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
@@ -25,22 +26,28 @@ def loops_of(sources: str) -> Forms:
     Args:
         sources: Stands for what they are compiled from; not empty.
     """
+    attempts_of, silenced_by, exact_occupancy = _loops_over_stations(sources)
+    survival, helped_kill, joint_stages, stage_means = _loops_over_relations(sources)
+    return Forms(
+        attempts_of=attempts_of,
+        survival=survival,
+        joint_stages=joint_stages,
+        stage_means=stage_means,
+        silenced_by=silenced_by,
+        exact_occupancy=exact_occupancy,
+        helped_kill=helped_kill,
+    )
 
+
+AttemptsOf = Callable[[Contenders, Exchange], Attempts]
+SilencedBy = Callable[[Silencing, FloatArray], Silenced]
+ExactOccupancy = Callable[[SetTable, FloatArray], Occupancy]
+
+
+def _loops_over_stations(sources: str) -> tuple[AttemptsOf, SilencedBy, ExactOccupancy]:
     def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
         assert sources
         return attempts.attempts_of(contenders, times)
-
-    def survival(met: Interferers, windows: Windows) -> Survival:
-        assert sources
-        return gaps.survival(met, windows)
-
-    def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
-        assert sources
-        return chains.joint_stages(one, two)
-
-    def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
-        assert sources
-        return chains.stage_means(given, by_stage)
 
     def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
         assert sources
@@ -49,6 +56,20 @@ def loops_of(sources: str) -> Forms:
     def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
         assert sources
         return occupancy.exact_occupancy(table, activity)
+
+    return kept_on_disk(attempts_of), kept_on_disk(silenced_by), kept_on_disk(exact_occupancy)
+
+
+Survives = Callable[[Interferers, Windows], Survival]
+HelpedKill = Callable[[Helped, FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
+JointStages = Callable[[SideRates, SideRates], FloatArray]
+StageMeans = Callable[[Given, FloatArray], FloatArray]
+
+
+def _loops_over_relations(sources: str) -> tuple[Survives, HelpedKill, JointStages, StageMeans]:
+    def survival(met: Interferers, windows: Windows) -> Survival:
+        assert sources
+        return gaps.survival(met, windows)
 
     def helped_kill(
         helped: Helped,
@@ -60,14 +81,19 @@ def loops_of(sources: str) -> Forms:
         assert sources
         return overlap.helped_kill(helped, on, on_air_us, busy_us, eager)
 
-    return Forms(
-        kept_on_disk(attempts_of),
+    def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
+        assert sources
+        return chains.joint_stages(one, two)
+
+    def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
+        assert sources
+        return chains.stage_means(given, by_stage)
+
+    return (
         kept_on_disk(survival),
+        kept_on_disk(helped_kill),
         kept_on_disk(joint_stages),
         kept_on_disk(stage_means),
-        kept_on_disk(silenced_by),
-        kept_on_disk(exact_occupancy),
-        kept_on_disk(helped_kill),
     )
 
 
