@@ -76,6 +76,14 @@ def test_explain_prints_chain_and_totals(run):
     assert lines[-1].split() == ["makespan", "5.000000", "s"]
 
 
+def test_explain_names_the_run_that_it_cannot_explain(run, capsys):
+    path = run / "trace.jsonl"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:9]))
+
+    assert code("explain", run) == 1
+    assert capsys.readouterr().err.startswith(f"{run}: the run ended truncated")
+
+
 def test_explain_prints_json_that_sums_to_the_makespan(run):
     document = json.loads(ncsim("explain", run, "--json").stdout)
 

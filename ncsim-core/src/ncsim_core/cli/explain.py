@@ -29,8 +29,13 @@ def explain(
     from ncsim_core.metrics.documents import explanation_document
     from ncsim_core.metrics.explanation import explain_run
     from ncsim_core.trace.files import json_text
+    from ncsim_core.trace.records import TraceError
 
-    explanation = explain_run(run_of(run))
+    found = run_of(run)
+    try:
+        explanation = explain_run(found)
+    except TraceError as error:
+        raise TraceError(f"{run}: {error}") from error
     if as_json:
         typer.echo(json_text(explanation_document(explanation)), nl=False)
         return
