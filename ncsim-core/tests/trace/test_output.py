@@ -159,6 +159,14 @@ def test_a_link_is_written_through_and_a_pipe_is_written_to(tmp_path):
     assert (tmp_path / "pipe").is_fifo()
 
 
+def test_standard_output_may_be_given_as_a_file():
+    write = "from pathlib import Path; from ncsim_core.trace.files import write_atomically as write"
+    command = f"{write}; write(Path('/dev/stdout'), 'text')"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, check=True)
+
+    assert done.stdout == b"text"
+
+
 def test_compressed_text_does_not_depend_on_the_clock(tmp_path):
     for name in ("a.gz", "b.gz"):
         write_atomically(tmp_path / name, "text\n")

@@ -62,9 +62,10 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
 def _places(path: Path) -> tuple[Path, Path]:
     """Return where a file is to be in the end, and where it is written until it is whole."""
+    if path.exists() and not path.is_file():
+        return path, path
     final = path.resolve() if path.is_symlink() else path
-    is_stream = final.exists() and not final.is_file()
-    return final, final if is_stream else temporary_sibling(final)
+    return final, temporary_sibling(final)
 
 
 def json_text(document: object) -> str:
