@@ -125,7 +125,6 @@ def statics_of(scene: Scene) -> Statics:
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
     fate = fate_of(scene, hostile, alone, RTS_RATIO_dB)
-    fatal = fatal_slots(fate, scene.data_us[hostile.link])
     noticed_us = np.where(fate.captures, 0.0, CTS_NOTICED_us)
     window_us = _windows_us(scene, hostile, noticed_us)
     return Statics(
@@ -142,8 +141,8 @@ def statics_of(scene: Scene) -> Statics:
         _helped(scene, hostile),
         _helper_relation(scene, hostile),
         scene.silenced_by_cts[own, hostile.station],
-        unmet(fatal),
-        unmet(np.full_like(fatal, SLOTS_MET)),
+        unmet(fatal_slots(fate, scene.data_us[hostile.link])),
+        unmet(np.full((len(hostile), 1), SLOTS_MET)),
         silenced_share(scene),
         unread_of(scene, RTS_RATIO_dB) if scene.settings.rts_cts else None,
         lost_fields(scene, near.noise_mW),
