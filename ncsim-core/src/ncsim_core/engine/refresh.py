@@ -97,11 +97,11 @@ def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: S
     moves.sort()  # by number, which differ
     cause = rate_cause_of(("start" if change is occupy else "finish", transfer.number))
     flows_on = state.links.flows
-    against = competition_on([bottleneck for _, _, _, bottleneck in moves], state)
-    changes = [
-        rate_change_of((number, rate_MBps, bottleneck, len(flows_on[bottleneck]), competition))
-        for (number, _, rate_MBps, bottleneck), competition in zip(moves, against, strict=True)
-    ]
+    numbers, _, rates_MBps, bottlenecks = zip(*moves, strict=True)
+    counts = [len(flows_on[link]) for link in bottlenecks]
+    against = competition_on(bottlenecks, state)
+    columns = zip(numbers, rates_MBps, bottlenecks, counts, against, strict=True)
+    changes = list(map(rate_change_of, columns))
     for observer in state.rate_observers:
         observer.rates_assigned(state.now_us, cause, changes)
 

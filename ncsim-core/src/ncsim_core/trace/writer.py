@@ -11,10 +11,11 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
-from typing import Final, Self, TextIO
+from typing import Final, Self, TextIO, TypeVar
 
 from typing_extensions import override
 
+from ncsim_core.contracts.interference_model import Competition
 from ncsim_core.engine.observer import Observer, RateCause, RateChange
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
@@ -33,32 +34,50 @@ LONG_LINE_CHARACTERS: Final = 64 * 1024
 """From here on a line, of an injection say, is written at once."""
 
 LIVE_FLUSH_s: Final = 0.25
-MAX_FLOATS_KEPT: Final = 10_000
-MAX_ROUTES_KEPT: Final = 10_000
+MAX_TEXTS_KEPT: Final = 10_000
+
+BY: Final = {"start": "s", "finish": "e"}
+
+_T = TypeVar("_T")
 
 to_json: Final[Callable[[object], str]] = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False
 ).encode
 
 
-class _FloatTexts(dict[float, str]):
-    """The text of each float as json writes it, kept because rates and factors recur."""
+class _Texts(dict[_T, str]):
+    """The text of each value as json writes it, kept because rates, links and routes recur.
 
-    def __missing__(self, number: float) -> str:
-        text = float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
-        if len(self) < MAX_FLOATS_KEPT:
-            self[number] = text
+    Args:
+        text_of: Makes the text of a value.
+    """
+
+    def __init__(self, text_of: Callable[[_T], str]) -> None:
+        super().__init__()
+        self._text_of = text_of
+
+    def __missing__(self, value: _T) -> str:
+        text = self._text_of(value)
+        if len(self) < MAX_TEXTS_KEPT:
+            self[value] = text
         return text
 
 
-class _RouteTexts(dict[Route, str]):
-    """The text of each route as json writes it, kept because routes recur."""
+def _float_text(number: float) -> str:
+    return float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
 
-    def __missing__(self, route: Route) -> str:
-        text = f"[{','.join(map(str, route))}]"
-        if len(self) < MAX_ROUTES_KEPT:
-            self[route] = text
-        return text
+
+def _route_text(route: Route) -> str:
+    return f"[{','.join(map(str, route))}]"
+
+
+def _against_text(against: tuple[Competition, ...]) -> str:
+    """Return the three columns of what bottlenecks are up against."""
+    contenders, hidden, factors = zip(*against, strict=True)
+    return (
+        f'"nc":[{",".join(map(str, contenders))}],"nh":[{",".join(map(str, hidden))}],'
+        f'"fh":[{",".join(map(_float_text, factors))}]'
+    )
 
 
 class TraceWriter(Observer):
@@ -92,8 +111,9 @@ class TraceWriter(Observer):
         self._sink = TextSink(target, is_live=is_live)
         self._is_live = is_live
         self._due_s = -math.inf
-        self._float_text = _FloatTexts().__getitem__
-        self._route_text = _RouteTexts().__getitem__
+        self._float_text = _Texts(_float_text).__getitem__
+        self._route_text = _Texts(_route_text).__getitem__
+        self._against_text = _Texts(_against_text).__getitem__
         self._lines: list[str] = []
         self._append = self._lines.append
         self._counts = dict.fromkeys(RECORDS, 0)
@@ -153,36 +173,15 @@ class TraceWriter(Observer):
     ) -> None:
         if self._level != "full" or not changes:
             return
-        by = "s" if cause.change == "start" else "e"
         self._counts["recalc"] += 1
-        if len(changes) == 1:
-            self._append(self._recalc_of_one(at_us, by, cause.transfer, changes[0]))
-            return
-        text = self._float_text
-        transfers = rates = links = contenders = hidden = factors = flows = ""
-        for transfer, rate_MBps, bottleneck, flow_count, competition in changes:
-            contender_count, hidden_count, hidden_factor = competition
-            transfers += f",{transfer}"
-            rates += f",{text(rate_MBps)}"
-            links += f",{bottleneck}"
-            contenders += f",{contender_count}"
-            hidden += f",{hidden_count}"
-            factors += f",{text(hidden_factor)}"
-            flows += f",{flow_count}"
+        change, transfer = cause
+        transfers, rates_MBps, links, flows, against = zip(*changes, strict=True)
+        rates = ",".join(map(self._float_text, rates_MBps))
         self._append(
-            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause.transfer}],"x":[{transfers[1:]}],'
-            f'"r":[{rates[1:]}],"l":[{links[1:]}],"nc":[{contenders[1:]}],"nh":[{hidden[1:]}],'
-            f'"fh":[{factors[1:]}],"f":[{flows[1:]}]}}\n'
-        )
-
-    def _recalc_of_one(self, at_us: Instant, by: str, cause: int, change: RateChange) -> str:
-        """Return the line for a single change, which is half of them, in half the time."""
-        transfer, rate_MBps, bottleneck, flows, (contenders, hidden, hidden_factor) = change
-        text = self._float_text
-        return (
-            f'{{"t":{at_us},"k":"recalc","by":["{by}",{cause}],"x":[{transfer}],'
-            f'"r":[{text(rate_MBps)}],"l":[{bottleneck}],"nc":[{contenders}],"nh":[{hidden}],'
-            f'"fh":[{text(hidden_factor)}],"f":[{flows}]}}\n'
+            f'{{"t":{at_us},"k":"recalc","by":["{BY[change]}",{transfer}],'
+            f'"x":[{",".join(map(str, transfers))}],"r":[{rates}],'
+            f'"l":[{",".join(map(str, links))}],{self._against_text(against)},'
+            f'"f":[{",".join(map(str, flows))}]}}\n'
         )
 
     @override
