@@ -5,8 +5,8 @@
     python benchmarks/bench.py --all    with what takes minutes: long runs, the sweep, slow peers
 
 Every line is measured by one of the scripts beside this one in a process of its own, in CPU
-seconds, by default as a median of 5. Peers are measured in the same run if ``make bench-peers`` has
-set them up.
+seconds, by default as a median of 5; *in loops* divides by what a fixed loop took before. Peers are
+measured in the same run if ``make bench-peers`` has set them up, and ratios to them come last.
 """
 
 import importlib.util
@@ -16,7 +16,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -26,7 +26,9 @@ from memory_by_size import CASES
 
 HERE: Final = Path(__file__).parent
 OUTPUT: Final = HERE.parent / "out" / "bench.md"
-HEADINGS: Final = ("what", "target", "measured", "ratio", "verdict")
+HEADINGS: Final = ("what", "target", "measured", "ratio", "verdict", "in loops")
+MACHINE: Final = "this machine: 2,000,000 turns of a Python loop"
+"""What other times are compared with, so that a slow hour of the machine is seen as such."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ def all_lines() -> Iterator[Line]:
 
 
 def _small_lines() -> Iterator[Line]:
-    yield Line("this machine: 2,000,000 turns of a Python loop", ("timing.py",))
+    yield Line(MACHINE, ("timing.py",))
     over = r"([\d.]+) s over"
     yield Line("start: ncsim --help, over python", ("start_up.py", "help"), over, 0.100)
     yield Line("start: ncsim run, 3 tasks, HEFT", ("start_up.py", "run"), target=0.300)
@@ -151,14 +153,31 @@ def measured(line: Line) -> float | None:
     return float(found[1])
 
 
-def cells(line: Line, value: float | None) -> tuple[str, ...]:
-    """Return what stands in a line."""
+def cells(line: Line, value: float | None, loop_s: float) -> tuple[str, ...]:
+    """Return what stands in a line.
+
+    Args:
+        line: The line.
+        value: What was measured.
+        loop_s: What a fixed loop took on this machine just before.
+    """
     shown = "failed" if value is None else f"{value:.3g} {line.unit}"
+    loops = f"{value / loop_s:.3g}" if value is not None and line.unit == "s" else ""
     if line.target is None or value is None:
-        return line.name, "", shown, "", ""
+        return line.name, "", shown, "", "", loops
     ratio = value / line.target
     verdict = "met" if ratio <= 1 else "missed"
-    return line.name, f"{line.target:g} {line.unit}", shown, f"{ratio:.2f}", verdict
+    return line.name, f"{line.target:g} {line.unit}", shown, f"{ratio:.2f}", verdict, loops
+
+
+def ratios_to_peers(seconds: Mapping[str, float]) -> Iterator[str]:
+    """Yield how many times as long as a peer ncsim takes, for what both were measured on."""
+    for name, theirs_s in seconds.items():
+        peer, _, what = name.removeprefix("peer: ").rpartition(", ")
+        model = "csma_bianchi" if "csma_bianchi" in peer else "none"
+        ours_s = seconds.get(f"run: {model}, {what}")
+        if name.startswith("peer: ") and ours_s is not None:
+            yield f"ncsim takes {ours_s / theirs_s:.3g} times as long as {peer}, {what}"
 
 
 def main() -> None:
@@ -175,13 +194,19 @@ def main() -> None:
         f"{time.strftime('%Y-%m-%d')}, {about}{platform.python_version()}. CPU time, medians of 5.",
         "",
         "| " + " | ".join(HEADINGS) + " |",
-        "|---|---:|---:|---:|---|",
+        "|---|---:|---:|---:|---|---:|",
     ]
     print("\n".join(head), flush=True)
-    rows = []
+    loop_s = measured(Line(MACHINE, ("timing.py",))) or 1.0
+    rows, seconds = [], {}
     for line in chosen:
-        rows.append("| " + " | ".join(cells(line, measured(line))) + " |")
+        value = measured(line)
+        if value is not None and line.unit == "s":
+            seconds[line.name] = value
+        rows.append("| " + " | ".join(cells(line, value, loop_s)) + " |")
         print(rows[-1], flush=True)
+    rows += ["", *(f"- {each}" for each in ratios_to_peers(seconds))]
+    print("\n".join(rows[len(chosen) :]), flush=True)
     OUTPUT.parent.mkdir(exist_ok=True)
     OUTPUT.write_text("\n".join([*head, *rows]) + "\n", encoding="utf-8")
 
