@@ -8,9 +8,9 @@ stays where it is until it comes to the head, and brought forward, it rises.
 from typing import Final
 
 from ncsim_core.engine.compiled.compiling import Record, inlined
-from ncsim_core.engine.compiled.layout import NONE, NOT_YET, entry_at, transfer_at
+from ncsim_core.engine.compiled.layout import NONE, entry_at, transfer_at
 from ncsim_core.engine.events import TRANSFER_COMPLETE
-from ncsim_core.units import Instant
+from ncsim_core.units import Instant, NEVER_us
 
 KIND_SHIFT: Final = 48  # more ranks and tickets than any run has
 
@@ -34,19 +34,14 @@ def push_transfer(at_us: Instant, kind: int, number: int, state: Record) -> None
 
 @inlined
 def complete_at(at_us: Instant, number: int, state: Record) -> None:
-    """Let a transfer complete at a time, and at no other."""
+    """Let a transfer complete at a time, and at no other; ``NEVER_us`` pauses it."""
     transfer = transfer_at(number, state)
     transfer.completes_us = at_us
     if transfer.place == NONE:
-        push_transfer(at_us, TRANSFER_COMPLETE, number, state)
+        if at_us < NEVER_us:
+            push_transfer(at_us, TRANSFER_COMPLETE, number, state)
     elif at_us < entry_at(transfer.place, state).at_us:
         rise(transfer.place, at_us, entry_at(transfer.place, state).order, number, state)
-
-
-@inlined
-def pause(number: int, state: Record) -> None:
-    """Let a transfer not complete until something else is said."""
-    transfer_at(number, state).completes_us = NOT_YET
 
 
 @inlined
@@ -59,7 +54,7 @@ def find_due(state: Record) -> bool:
         if kind != TRANSFER_COMPLETE or transfer_at(number, state).completes_us == at_us:
             state.due_us, state.due_kind, state.due_number = at_us, kind, number
             return True
-        if transfer_at(number, state).completes_us == NOT_YET:
+        if transfer_at(number, state).completes_us == NEVER_us:
             remove_head(state)
         else:  # it has been put off
             sink(transfer_at(number, state).completes_us, head.order, number, state)
@@ -71,7 +66,7 @@ def remove_head(state: Record) -> None:
     """Take what is next off the queue."""
     if entry_at(0, state).order >> KIND_SHIFT == TRANSFER_COMPLETE:
         transfer = transfer_at(entry_at(0, state).number, state)
-        transfer.place, transfer.completes_us = NONE, NOT_YET
+        transfer.place, transfer.completes_us = NONE, NEVER_us
     state.entries -= 1
     last = entry_at(state.entries, state)
     if state.entries > 0:

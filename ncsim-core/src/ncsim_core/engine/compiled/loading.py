@@ -11,7 +11,7 @@ from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.layout import NONE, NOT_YET
 from ncsim_core.engine.setup import Setup
 from ncsim_core.network import NodeIndex, Route
-from ncsim_core.units import us_from_s
+from ncsim_core.units import NEVER_us, us_from_s
 
 
 def loaded(setup: Setup) -> Arrays:
@@ -52,7 +52,7 @@ def _tasks(setup: Setup) -> Record:
 def _transfers(setup: Setup) -> Record:
     transfers = records(len(setup.dependencies), layout.TRANSFER, bottleneck=NONE, place=NONE)
     transfers.created_us = transfers.started_us = transfers.ended_us = NOT_YET
-    transfers.completes_us = NOT_YET
+    transfers.completes_us = NEVER_us
     transfers.source = [entry.source for entry in setup.dependencies]
     transfers.target = [entry.target for entry in setup.dependencies]
     transfers.rank = [entry.rank for entry in setup.dependencies]

@@ -4,7 +4,7 @@ from typing import Final
 
 from ncsim_core import units
 from ncsim_core.engine.compiled.compiling import Record, inlined
-from ncsim_core.engine.compiled.event_queue import complete_at, pause
+from ncsim_core.engine.compiled.event_queue import complete_at
 from ncsim_core.engine.compiled.layout import (
     NONE,
     hop_at,
@@ -16,7 +16,7 @@ from ncsim_core.engine.compiled.layout import (
 from ncsim_core.engine.compiled.link_shares import moves_by_link
 from ncsim_core.engine.compiled.log import log_rates
 from ncsim_core.engine.compiled.radio import look_up, switch_links
-from ncsim_core.units import MICROSECONDS_PER_SECOND
+from ncsim_core.units import MICROSECONDS_PER_SECOND, NEVER_us
 
 service_time_us: Final = inlined(units.service_time_us)
 
@@ -45,9 +45,7 @@ def go_on(state: Record) -> bool:
     if state.has_radio and not look_up(state):
         return False
     moves_by_link(state.refreshing, state)
-    credit_work(state)
-    assign_rates(state)
-    reschedule_completions(state)
+    bring_up_to_date(state)  # 3. to 5.
     if state.shows_rates:
         log_rates(state)
     return True
@@ -101,39 +99,24 @@ def release(number: int, state: Record) -> int:
 
 
 @inlined
-def credit_work(state: Record) -> None:
-    """Credit each transfer what it was served since it was last credited (``eq:progress``)."""
+def bring_up_to_date(state: Record) -> None:
+    """Give each transfer its new rate: steps 3 to 5, which concern it alone."""
     now_us = state.now_us
-    for k in range(state.moves_count):
-        flow = transfer_at(move_at(k, state).transfer, state)
-        if flow.rate_MBps > 0:
-            elapsed_us = now_us - flow.credited_us
-            due_MB = flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
-            left_MB = flow.remaining_MB - due_MB
-            flow.remaining_MB = left_MB if left_MB > 0 else 0.0
-        flow.credited_us = now_us
-
-
-@inlined
-def assign_rates(state: Record) -> None:
-    """Give each transfer its new rate, at which every hop must keep up."""
     for k in range(state.moves_count):
         move = move_at(k, state)
         flow = transfer_at(move.transfer, state)
-        flow.rate_MBps, flow.bottleneck = move.rate_MBps, move.bottleneck
-
-
-@inlined
-def reschedule_completions(state: Record) -> None:
-    """Replace completions: now if nothing is left, none while the rate is zero."""
-    now_us = state.now_us
-    for k in range(state.moves_count):
-        number = move_at(k, state).transfer
-        flow = transfer_at(number, state)
-        if flow.remaining_MB <= 0:
-            complete_at(now_us, number, state)
-        elif flow.rate_MBps > 0:
-            after_us = service_time_us(flow.remaining_MB, flow.rate_MBps)
-            complete_at(now_us + after_us, number, state)
+        left_MB = flow.remaining_MB
+        if flow.rate_MBps > 0:  # 3. credit work at the old rate (``eq:progress``)
+            elapsed_us = now_us - flow.credited_us
+            left_MB -= flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
+            left_MB = left_MB if left_MB > 0 else 0.0
+            flow.remaining_MB = left_MB
+        flow.credited_us = now_us
+        flow.rate_MBps, flow.bottleneck = move.rate_MBps, move.bottleneck  # 4.
+        if left_MB <= 0:  # 5. replace the completion
+            completes_us = now_us
+        elif move.rate_MBps > 0:
+            completes_us = now_us + service_time_us(left_MB, move.rate_MBps)
         else:
-            pause(number, state)
+            completes_us = NEVER_us
+        complete_at(completes_us, move.transfer, state)

@@ -15,7 +15,7 @@ from ncsim_core.engine.sessions.choice import session_of
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import NodeState, State, TaskStatus, Transfer
 from ncsim_core.engine.tasks import waiting_task
-from ncsim_core.units import Instant
+from ncsim_core.units import Instant, NEVER_us
 
 STATUSES = tuple(TaskStatus)
 
@@ -130,7 +130,7 @@ def _queue(arrays: Arrays, transfers: dict[int, Transfer]) -> EventQueue:
         kind = order >> KIND_SHIFT
         if kind == TRANSFER_COMPLETE:
             completes_us = int(rows.completes_us[number])
-            if completes_us >= 0:
+            if completes_us < NEVER_us:
                 transfers[number].completes_us = completes_us
                 queue.enter(transfers[number])
         elif kind == TRANSFER_START:
