@@ -8,7 +8,7 @@ folder reuses them; ``member`` says which runs of which plan they belong to.
 import json
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Final, Self
@@ -45,12 +45,9 @@ _SAVE = (
     f"INSERT INTO result ({_COLUMNS}) VALUES ({_MARKS}) "
     f"ON CONFLICT (key) DO UPDATE SET {_CHANGES} WHERE result.status <> 'completed'"
 )
-_ALL: Final = (
-    f"SELECT {_COLUMNS} FROM result",
-    "SELECT digest, name, document, runs, turn FROM plan",
-    "SELECT plan, number, point, seed, key FROM member",
-)
-"""Everything that a study holds."""
+_ALL_RESULTS = f"SELECT {_COLUMNS} FROM result"
+_ALL_PLANS = "SELECT digest, name, document, runs, turn FROM plan"
+_ALL_MEMBERS = "SELECT plan, number, point, seed, key FROM member"
 
 
 class Store:
@@ -197,17 +194,24 @@ class Store:
 
     def merge(self, other: "Store") -> None:
         """Take over all that another study holds."""
-        results, plans, members = (other._read(each) for each in _ALL)  # noqa: SLF001 - same class
+        read, source = other._read, other._connection  # noqa: SLF001 - of the same class
+        with other._reading():  # noqa: SLF001 - likewise
+            results = source.execute(_ALL_RESULTS)
+            plans = source.execute(_ALL_PLANS)
+            members = source.execute(_ALL_MEMBERS)
         with self._transaction() as connection:
-            connection.executemany(_SAVE, results)
-            connection.executemany("INSERT OR IGNORE INTO plan VALUES (?, ?, ?, ?, ?)", plans)
-            connection.executemany("INSERT OR IGNORE INTO member VALUES (?, ?, ?, ?, ?)", members)
+            connection.executemany(_SAVE, read(results, checked_row))
+            connection.executemany("INSERT OR IGNORE INTO plan VALUES (?, ?, ?, ?, ?)", read(plans))
+            connection.executemany(
+                "INSERT OR IGNORE INTO member VALUES (?, ?, ?, ?, ?)", read(members)
+            )
 
-    def _read(self, query: str) -> Iterator[tuple[Any, ...]]:
-        """Yield rows; results among them checked."""
+    def _read(
+        self, cursor: sqlite3.Cursor, checked: Callable[[tuple[Any, ...]], tuple[Any, ...]] = tuple
+    ) -> Iterator[tuple[Any, ...]]:
+        """Yield rows of this study, checked."""
         with self._reading():
-            for row in self._connection.execute(query):
-                yield checked_row(row) if query == _ALL[0] else row
+            yield from map(checked, cursor)
 
     def _reading(self) -> AbstractContextManager[None]:
         return reading(Path(STORE_NAME) if self.path is None else self.path / STORE_NAME)
