@@ -4,6 +4,7 @@ A transfer is looked at again only if a share has grown that was its least, or o
 more than its rate: nothing else changes the least share on its route or the first link that has it.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 
 from ncsim_core.contracts.interference_model import InterferenceSession
@@ -33,11 +34,13 @@ def moves_by_link(transfer: Transfer, touched: Touched, state: State, setup: Set
     if transfer.ended_us is None:
         affected[transfer.number] = transfer
     share_of = state.links.share_MBps
-    look_up = share_of.__getitem__
     moves = []
     for number, flow in affected.items():
-        least = min(flow.route, key=look_up)  # the first link with the least share
-        rate_MBps = share_of[least]
+        rate_MBps, least = math.inf, -1
+        for link in flow.route:  # min() with a key takes three times as long
+            share_MBps = share_of[link]
+            if share_MBps < rate_MBps:  # so that the first of equals stays
+                rate_MBps, least = share_MBps, link
         if rate_MBps != flow.rate_MBps or least != flow.bottleneck:
             moves.append((number, flow, rate_MBps, least))
     return moves
