@@ -7,7 +7,7 @@ number of its dependency.
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple, TypeAlias
 
 from ncsim_core.contracts.interference_model import Competition
 from ncsim_core.engine.outcome import Outcome
@@ -41,8 +41,13 @@ class RateChange(NamedTuple):
     competition: Competition
 
 
+RateColumns: TypeAlias = tuple[
+    Sequence[int], Sequence[float], Sequence[LinkIndex], Sequence[int], Sequence[Competition]
+]
+"""Several rate changes as columns of equal length, one for each field of ``RateChange``."""
+
 rate_cause_of: Final = partial(tuple.__new__, RateCause)
-rate_change_of: Final = partial(tuple.__new__, RateChange)
+_rate_change_of: Final = partial(tuple.__new__, RateChange)
 """Make a ``RateCause`` or ``RateChange`` of a tuple, in a third of the time of naming fields."""
 
 
@@ -84,6 +89,13 @@ class Observer:
         self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
     ) -> None:
         """Rates have moved; one call per start or finish that moved any."""
+
+    def rate_columns_assigned(self, at_us: Instant, cause: RateCause, columns: RateColumns) -> None:
+        """The same in columns, which is how the engine tells it.
+
+        Override this instead of ``rates_assigned`` to save making an object of every change.
+        """
+        self.rates_assigned(at_us, cause, [*map(_rate_change_of, zip(*columns, strict=True))])
 
     def transfer_ended(self, at_us: Instant, transfer: int) -> None:
         """The last byte has been served."""

@@ -12,7 +12,7 @@ from typing import TypeAlias
 from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Touched
-from ncsim_core.engine.observer import rate_cause_of, rate_change_of
+from ncsim_core.engine.observer import rate_cause_of
 from ncsim_core.engine.route_rates import moves_by_route
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -99,11 +99,9 @@ def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: S
     flows_on = state.links.flows
     numbers, _, rates_MBps, bottlenecks = zip(*moves, strict=True)
     counts = [len(flows_on[link]) for link in bottlenecks]
-    against = competition_on(bottlenecks, state)
-    columns = zip(numbers, rates_MBps, bottlenecks, counts, against, strict=True)
-    changes = list(map(rate_change_of, columns))
+    columns = numbers, rates_MBps, bottlenecks, counts, competition_on(bottlenecks, state)
     for observer in state.rate_observers:
-        observer.rates_assigned(state.now_us, cause, changes)
+        observer.rate_columns_assigned(state.now_us, cause, columns)
 
 
 def competition_on(links: Sequence[LinkIndex], state: State) -> Sequence[Competition]:

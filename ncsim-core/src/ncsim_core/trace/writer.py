@@ -8,6 +8,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
@@ -15,8 +16,8 @@ from typing import Final, Self, TextIO, TypeVar
 
 from typing_extensions import override
 
-from ncsim_core.contracts.interference_model import Competition
-from ncsim_core.engine.observer import Observer, RateCause, RateChange
+from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
+from ncsim_core.engine.observer import Observer, RateCause, RateChange, RateColumns
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.models import ComponentIdentity
@@ -67,17 +68,14 @@ def _float_text(number: float) -> str:
     return float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
 
 
+def _alone_text(count: int) -> str:
+    """Return what ``count`` bottlenecks are up against that compete with nobody."""
+    zeros, ones = ",".join(["0"] * count), ",".join(["1.0"] * count)
+    return f'"nc":[{zeros}],"nh":[{zeros}],"fh":[{ones}]'
+
+
 def _route_text(route: Route) -> str:
     return f"[{','.join(map(str, route))}]"
-
-
-def _against_text(against: tuple[Competition, ...]) -> str:
-    """Return the three columns of what bottlenecks are up against."""
-    contenders, hidden, factors = zip(*against, strict=True)
-    return (
-        f'"nc":[{",".join(map(str, contenders))}],"nh":[{",".join(map(str, hidden))}],'
-        f'"fh":[{",".join(map(_float_text, factors))}]'
-    )
 
 
 class TraceWriter(Observer):
@@ -113,7 +111,9 @@ class TraceWriter(Observer):
         self._due_s = -math.inf
         self._float_text = _Texts(_float_text).__getitem__
         self._route_text = _Texts(_route_text).__getitem__
-        self._against_text = _Texts(_against_text).__getitem__
+        self._number_text = _Texts[int](str).__getitem__
+        self._count_text = _Texts[int](str).__getitem__  # of a plug-in: 1 and 1.0 share a text
+        self._alone_text = _Texts(_alone_text).__getitem__
         self._lines: list[str] = []
         self._append = self._lines.append
         self._counts = dict.fromkeys(RECORDS, 0)
@@ -171,17 +171,36 @@ class TraceWriter(Observer):
     def rates_assigned(
         self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
     ) -> None:
-        if self._level != "full" or not changes:
+        if changes:
+            transfers, rates_MBps, links, flows, against = zip(*changes, strict=True)
+            columns = transfers, rates_MBps, links, flows, against
+            self.rate_columns_assigned(at_us, cause, columns)
+
+    @override
+    def rate_columns_assigned(self, at_us: Instant, cause: RateCause, columns: RateColumns) -> None:
+        if self._level != "full":
             return
         self._counts["recalc"] += 1
-        change, transfer = cause
-        transfers, rates_MBps, links, flows, against = zip(*changes, strict=True)
-        rates = ",".join(map(self._float_text, rates_MBps))
+        change, number = cause
+        transfers, rates_MBps, links, flows, against = columns
+        text = self._number_text
         self._append(
-            f'{{"t":{at_us},"k":"recalc","by":["{BY[change]}",{transfer}],'
-            f'"x":[{",".join(map(str, transfers))}],"r":[{rates}],'
-            f'"l":[{",".join(map(str, links))}],{self._against_text(against)},'
-            f'"f":[{",".join(map(str, flows))}]}}\n'
+            f'{{"t":{at_us},"k":"recalc","by":["{BY[change]}",{number}],'
+            f'"x":[{",".join(map(text, transfers))}],'
+            f'"r":[{",".join(map(self._float_text, rates_MBps))}],'
+            f'"l":[{",".join(map(text, links))}],{self._against_text(against)},'
+            f'"f":[{",".join(map(text, flows))}]}}\n'
+        )
+
+    def _against_text(self, against: Sequence[Competition]) -> str:
+        """Return the three columns of what bottlenecks are up against."""
+        if against.count(NO_COMPETITION) == len(against):
+            return self._alone_text(len(against))
+        text = self._count_text
+        contenders, hidden, factors = zip(*against, strict=True)
+        return (
+            f'"nc":[{",".join(map(text, contenders))}],"nh":[{",".join(map(text, hidden))}],'
+            f'"fh":[{",".join(map(self._float_text, factors))}]'
         )
 
     @override
@@ -239,7 +258,7 @@ def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dic
         "version": VERSION,
         "time_unit": TIME_UNIT,
         "level": level,
-        "software": header.software or f"ncsim-core {version('ncsim-core')}",
+        "software": header.software or f"ncsim-core {_own_version()}",
         "scenario": header.scenario,
         "scenario_sha256": header.scenario_sha256,
         "seed": header.seed,
@@ -249,6 +268,11 @@ def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dic
         "links": link_rows(setup.network),
         "kinds": kinds_documented(),
     }
+
+
+@cache
+def _own_version() -> str:
+    return version("ncsim-core")
 
 
 def _plugin_entry(identity: ComponentIdentity) -> dict[str, object]:

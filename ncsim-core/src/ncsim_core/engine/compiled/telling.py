@@ -1,9 +1,10 @@
 """What the compiled loop noted, told to observers as the engine tells it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from operator import itemgetter
 from typing import Final, TypeAlias
 
-from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition, competition_of
+from ncsim_core.contracts.interference_model import NO_COMPETITION, competition_of
 from ncsim_core.contracts.interference_tables import InterferenceTables
 from ncsim_core.engine.compiled import layout
 from ncsim_core.engine.compiled.arrays import Arrays, records
@@ -14,7 +15,7 @@ from ncsim_core.engine.events import (
     TRANSFER_COMPLETE,
     TRANSFER_START,
 )
-from ncsim_core.engine.observer import RateChange, rate_cause_of, rate_change_of
+from ncsim_core.engine.observer import RateColumns, rate_cause_of
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State
 from ncsim_core.units import Instant
@@ -25,6 +26,8 @@ RATES_KEPT: Final = 16_384
 
 Assigned: TypeAlias = tuple[float, int, int, int, int, int, int]
 """A row of the array ``assigned``."""
+
+TRANSFER_OF: Final = itemgetter(1)
 
 
 class Teller:
@@ -101,17 +104,17 @@ class Teller:
         self, at_us: Instant, kind: int, number: int, assigned: Sequence[Assigned]
     ) -> None:
         cause = rate_cause_of(("start" if kind == TRANSFER_START else "finish", number))
-        changes = list(self._changes(assigned))
-        changes.sort()
+        columns = self._columns(sorted(assigned, key=TRANSFER_OF))
         for observer in self._state.rate_observers:
-            observer.rates_assigned(at_us, cause, changes)
+            observer.rate_columns_assigned(at_us, cause, columns)
 
-    def _changes(self, assigned: Sequence[Assigned]) -> Iterator[RateChange]:
-        for rate_MBps, transfer, link, flows, *against in assigned:
-            competition = self._competition(link, *against)
-            yield rate_change_of((transfer, rate_MBps, link, flows, competition))
-
-    def _competition(self, link: int, contenders: int, hidden: int, level: int) -> Competition:
+    def _columns(self, assigned: Sequence[Assigned]) -> RateColumns:
+        rates_MBps, transfers, links, flows, *against = zip(*assigned, strict=True)
         if self._tables is None:
-            return NO_COMPETITION
-        return competition_of((contenders, hidden, self._tables.hidden_factors[link][level]))
+            return transfers, rates_MBps, links, flows, [NO_COMPETITION] * len(links)
+        hidden_factors = self._tables.hidden_factors
+        competition = [
+            competition_of((contenders, hidden, hidden_factors[link][level]))
+            for link, contenders, hidden, level in zip(links, *against, strict=True)
+        ]
+        return transfers, rates_MBps, links, flows, competition
