@@ -130,6 +130,22 @@ def test_rates_given_as_numpy_numbers_are_written_like_any_other():
     )
 
 
+def test_counts_that_a_plugin_gives_as_floats_change_no_other_number():
+    text = StringIO()
+    writer = TraceWriter(text)
+    worked_example(writer)
+
+    for competition in (Competition(1.0, 0, 0.5), Competition()):
+        writer.rates_assigned(5, RateCause("start", 1), [RateChange(1, 2.0, 1, 1, competition)])
+    writer._flush()
+
+    first, second = map(json.loads, text.getvalue().splitlines()[1:])
+    numbers = {"by": ["s", 1], "x": [1], "r": [2.0], "l": [1], "f": [1]}
+    assert repr(first["nc"]) == "[1.0]"
+    for record in (first, second):
+        assert repr({key: record[key] for key in numbers}) == repr(numbers)
+
+
 def test_coarse_traces_hold_no_rates(tmp_path):
     worked_example(TraceWriter(tmp_path / "t.jsonl", level="coarse")).run()
 
