@@ -71,11 +71,11 @@ def release(state: State, transfer: Transfer) -> Touched:
 
 
 def bring_up_to_date(moves: Iterable[Move], state: State) -> None:
-    """Give each transfer its new rate: steps 3 to 5, which concern it alone."""
+    """Give each transfer its new rate: steps 3 to 5, which concern it alone (``eq:progress``)."""
     now_us, enter = state.now_us, state.queue.enter
     for _, flow, rate_MBps, bottleneck in moves:
         left_MB = flow.remaining_MB
-        if flow.rate_MBps > 0:  # 3. credit work at the old rate (``eq:progress``)
+        if flow.rate_MBps > 0:  # 3. credit work at the old rate
             elapsed_us = now_us - flow.credited_us
             left_MB -= flow.rate_MBps * elapsed_us / MICROSECONDS_PER_SECOND
             flow.remaining_MB = left_MB = left_MB if left_MB > 0 else 0.0
