@@ -1,11 +1,21 @@
-"""Water filling and sharing, against what fairness means."""
+"""Shares of a capacity, and of stations, against what fairness means."""
 
 import math
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ncsim_wifi.spatial.sharing import Sharing, water_fill
+from ncsim_wifi.spatial.sharing import Sharing, share_of_the_greedy
+
+
+def shares_of(capacity, demands, costs):
+    """Return what each gets: no more than it asks, nor than it could get if it asked for all."""
+    order = sorted(range(len(demands)), key=demands.__getitem__)
+    could = [
+        share_of_the_greedy(one, order, demands, costs, capacity) for one in range(len(demands))
+    ]
+    return [min(pair) for pair in zip(demands, could, strict=True)]
+
 
 demands = st.lists(st.floats(0.1, 50.0), min_size=1, max_size=6)
 
@@ -16,7 +26,7 @@ def test_nobody_gets_more_than_asked_and_who_gets_less_gets_as_much_as_anybody(
 ):
     costs = [random.uniform(0.5, 3.0) for _ in asked]
 
-    shares = water_fill(asked, capacity, costs)
+    shares = shares_of(capacity, asked, costs)
 
     spent = sum(share * cost for share, cost in zip(shares, costs, strict=True))
     assert spent <= capacity * (1 + 1e-9)
@@ -28,7 +38,7 @@ def test_nobody_gets_more_than_asked_and_who_gets_less_gets_as_much_as_anybody(
 
 
 def test_endless_demands_share_equally():
-    assert water_fill([math.inf] * 4, 10.0, [1.0] * 4) == [2.5] * 4
+    assert shares_of(10.0, [math.inf] * 4, [1.0] * 4) == [2.5] * 4
 
 
 def test_a_station_serves_its_links_in_turn_and_a_link_its_transfers():

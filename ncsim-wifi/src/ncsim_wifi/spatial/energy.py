@@ -74,14 +74,14 @@ class GateMasks(NamedTuple):
     Args:
         relation: The relations.
         row: The energy set of the station that is silenced.
-        subsets: Whether it is one with the other party of the relation, and without other
+        subsets: 1 where it is one with the other party of the relation, and without other
             hostile stations, that leaves the channel free; one of all these; one to compare with
             that leaves it free; one of all these; shape (relations, subsets, 4).
     """
 
     relation: IntArray
     row: IntArray
-    subsets: BoolArray
+    subsets: FloatArray
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
@@ -105,7 +105,7 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     free = ~sets.blocks[row[relation]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
     masks = np.stack([with_it & free, with_it, without & free, without], axis=2)
-    return GateMasks(relation, row[relation], masks)
+    return GateMasks(relation, row[relation], masks.astype(np.float64))
 
 
 class Silencing(NamedTuple):
@@ -165,7 +165,8 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     for member in range(on.shape[1]):
         weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
     weight = weight * tables.feasible
-    blocked = halving_sums(weight * tables.blocks) / halving_sums(weight)
+    blocking, every = halving_sums(np.stack([weight * tables.blocks, weight]))
+    blocked = blocking / every
     gates = (gate(weight, masks, tables.relation_count) for masks in (tables.before, tables.during))
     return Silenced(blocked, *gates)
 
@@ -176,6 +177,8 @@ def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     Source: MODEL 3.6.
     """
     result = np.ones(count)
+    if not len(masks.relation):
+        return result
     weight = weights[masks.row]
     terms = (masks.subsets * weight[:, :, None]).reshape(len(weight), KINDS * weight.shape[1])
     sums = halved(terms, KINDS).T

@@ -19,6 +19,8 @@ from ncsim_wifi.spatial.backoff import LONGEST_COUNTS, STAGES, WINDOWS
 from ncsim_wifi.spatial.sums import row_sums
 
 NEARLY_ONE = 1.0 - 1e-4  # attempt probabilities are 0.002 or more, or 0
+COUNTS = np.arange(LONGEST_COUNTS[-1] + 1.0)
+POWERS_OF_COUNTS = np.array([np.ones_like(COUNTS), COUNTS, COUNTS**2, COUNTS**3])[:, None, :]
 
 
 class CounterLaw(NamedTuple):
@@ -181,15 +183,11 @@ class Gaps:
         Args:
             last: The last N.
         """
-        n = np.arange(last + 1, dtype=np.float64)
-        terms = np.empty((len(self.after_us), len(n)))
+        terms = np.empty((len(self.after_us), last + 1))
         terms[:, 0] = 1.0
         terms[:, 1:] = ((1.0 - self.interrupted) * self.law.others[:, 0])[:, None]
         np.multiply.accumulate(terms, axis=1, out=terms)
-        moments = np.empty((4, *terms.shape))
-        moments[0] = terms
-        for order in range(1, 4):
-            np.multiply(terms, n**order, out=moments[order])
+        moments = terms * POWERS_OF_COUNTS[:, :, : last + 1]
         return np.add.accumulate(moments, axis=2, out=moments).reshape(4, -1)
 
     @cached_property

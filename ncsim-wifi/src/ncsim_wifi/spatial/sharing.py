@@ -10,43 +10,28 @@ from collections.abc import Mapping, Sequence
 ROUNDS = 6
 
 
-def water_fill(demands: Sequence[float], capacity: float, costs: Sequence[float]) -> list[float]:
-    """Return equal shares of a capacity, less for those who demand less.
-
-    Args:
-        demands: The most that each takes.
-        capacity: What there is.
-        costs: What one unit costs each.
-
-    >>> water_fill([1.0, 5.0, 9.0], 10.0, [1.0, 1.0, 1.0])
-    [1.0, 4.5, 4.5]
-    """
-    shares = [0.0] * len(demands)
-    waiting = sorted(range(len(demands)), key=demands.__getitem__)
-    cost = sum(costs)
-    for place in waiting:
-        level = max(0.0, capacity) / cost if cost > 0.0 else 0.0
-        shares[place] = min(demands[place], level)
-        capacity -= shares[place] * costs[place]
-        cost -= costs[place]
-    return shares
-
-
 def share_of_the_greedy(
-    greedy: int, order: Sequence[int], demands: Sequence[float], costs: Sequence[float]
+    greedy: int,
+    order: Sequence[int],
+    demands: Sequence[float],
+    costs: Sequence[float],
+    capacity: float = 1.0,
 ) -> float:
-    """Return the share of one that takes all it can get of a capacity of 1, as in ``water_fill``.
+    """Return the share of one that takes all it can get of a capacity.
+
+    Others get equal shares, less if they demand less.
 
     Args:
         greedy: Which one.
         order: All, by demand.
         demands: The most that each of the others takes.
         costs: What one unit costs each.
+        capacity: What there is.
 
     >>> share_of_the_greedy(1, [0, 2, 1], [0.2, 0.0, 0.9], [1.0, 1.0, 1.0])
     0.4
     """
-    capacity, cost = 1.0, sum(costs)
+    cost = sum(costs)
     for place in order:
         demand = demands[place]
         if place == greedy or (demand == math.inf and place > greedy):
@@ -75,7 +60,7 @@ class Sharing:
         for link in self._on_link:
             at_station.setdefault(station[link], []).append(link)
         self._shared = [
-            links
+            (links, {number for link in links for number in self._on_link[link]})
             for links in at_station.values()
             if len(links) > 1 or len(self._on_link[links[0]]) > 1
         ]
@@ -87,16 +72,19 @@ class Sharing:
             able: What each link would deliver if its station served no other.
         """
         offers = [{link: able[link] for link in route} for route in self._routes]
-        for links in self._shared:
+        for links, _ in self._shared:
             for link in links:
                 for number in self._on_link[link]:
                     offers[number][link] = math.inf
+        before: list[tuple[float, int, float]] = []
         for _ in range(ROUNDS if self._shared else 0):
             least = [_two_least(each) for each in offers]
-            has_moved = False
-            for links in self._shared:
-                has_moved |= self._serve(links, able, least, offers)
-            if not has_moved:
+            moved = {at for at, each in enumerate(least) if not before or each != before[at]}
+            before = least
+            for links, numbers in self._shared:
+                if not moved.isdisjoint(numbers):  # else it would offer the same again
+                    self._serve(links, able, least, offers)
+            if not moved:
                 break
         return [min((value, link) for link, value in each.items()) for each in offers]
 
@@ -106,8 +94,8 @@ class Sharing:
         able: Mapping[int, float],
         least: Sequence[tuple[float, int, float]],
         offers: Sequence[dict[int, float]],
-    ) -> bool:
-        """Write down what one station offers the transfers on its links; return if that is new."""
+    ) -> None:
+        """Write down what one station offers the transfers on its links."""
         demands = {
             link: [
                 second if link == tightest else first
@@ -115,16 +103,18 @@ class Sharing:
             ]
             for link in links
         }
+        if len(links) == 1:
+            self._offer(links[0], able[links[0]], demands[links[0]], offers)
+            return
         usable = [link for link in links if able[link]]
         asked = [sum(demands[link]) for link in usable]
         costs = [1.0 / able[link] for link in usable]
         order = sorted(range(len(usable)), key=asked.__getitem__)
         share = dict.fromkeys(links, 0.0)
         for place, link in enumerate(usable):
-            several = len(links) > 1
-            share[link] = share_of_the_greedy(place, order, asked, costs) if several else able[link]
-        moved = [self._offer(link, share[link], demands[link], offers) for link in links]
-        return any(moved)
+            share[link] = share_of_the_greedy(place, order, asked, costs)
+        for link in links:
+            self._offer(link, share[link], demands[link], offers)
 
     def _offer(
         self,
@@ -132,21 +122,16 @@ class Sharing:
         share: float,
         demands: Sequence[float],
         offers: Sequence[dict[int, float]],
-    ) -> bool:
-        """Write down what each transfer on a link could take of its share; return if it is new."""
+    ) -> None:
+        """Write down what each transfer on a link could take of its share."""
         numbers = self._on_link[link]
-        new = [share]
-        if len(numbers) > 1:
-            ones = [1.0] * len(numbers)
-            new = [
-                water_fill([*demands[:place], math.inf, *demands[place + 1 :]], share, ones)[place]
-                for place in range(len(numbers))
-            ]
-        has_moved = False
-        for number, value in zip(numbers, new, strict=True):
-            has_moved |= offers[number][link] != value
-            offers[number][link] = value
-        return has_moved
+        if len(numbers) == 1:
+            offers[numbers[0]][link] = share
+            return
+        ones = [1.0] * len(numbers)
+        order = sorted(range(len(numbers)), key=demands.__getitem__)
+        for place, number in enumerate(numbers):
+            offers[number][link] = share_of_the_greedy(place, order, demands, ones, share)
 
 
 def _two_least(offers: Mapping[int, float]) -> tuple[float, int, float]:

@@ -66,11 +66,12 @@ class FixedPoint:
     Args:
         scene: The active links.
         forms: Whether to work with arrays or with compiled loops, which makes no difference.
+        statics: Those of the scene, where they are known.
     """
 
-    def __init__(self, scene: Scene, forms: Forms = ARRAYS) -> None:
+    def __init__(self, scene: Scene, forms: Forms = ARRAYS, statics: Statics | None = None) -> None:
         self._scene, self._forms = scene, forms
-        self._statics: Statics = statics_of(scene)
+        self._statics: Statics = statics or statics_of(scene)
         self._joint = JointStages(scene, self._statics.hostile, forms)
         links, stations = len(scene.links), scene.station_count
         self._stages = np.zeros((stations, STAGES))

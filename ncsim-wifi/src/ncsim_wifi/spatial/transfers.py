@@ -11,22 +11,26 @@ Source: MODEL 5; docs/decisions/0001-route-rates.md.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from ncsim_core.context import ModelCache
 from ncsim_core.network import LinkIndex, Route
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.forms import forms_for
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.relay import clique_limits_MBps
-from ncsim_wifi.spatial.scene import scene_of
+from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.sharing import Sharing
 from ncsim_wifi.spatial.solve import FixedPoint
+from ncsim_wifi.spatial.statics import Statics, statics_of
 
 STEPS = 12  # after which rates of transfers move by a few percent at most
 LEAST_BUSY = 1e-3
 GAIN = 0.5
+MAX_KEPT_SCENES = 16  # up to a few MB each
 
 
 class RouteAlone(NamedTuple):
@@ -52,12 +56,23 @@ class Paths:
         place: The place of each link in the plant, -1 for wired ones.
         bandwidth_MBps: Clean bandwidth of each link.
         known: What is known of routes.
+        scenes: Latest scenes; transfers come and go on links that others use anyway.
     """
 
     plant: Plant
     place: Sequence[int]
     bandwidth_MBps: Sequence[float]
     known: dict[Route, RouteAlone] = field(default_factory=dict, compare=False)
+    scenes: ModelCache = field(default_factory=partial(ModelCache, MAX_KEPT_SCENES), compare=False)
+
+    def scene(self, places: tuple[int, ...]) -> tuple[Scene, Statics]:
+        """Return the scene of some places of the plant, and what stays the same in it."""
+
+        def built() -> tuple[Scene, Statics]:
+            scene = scene_of(self.plant, places)
+            return scene, statics_of(scene)
+
+        return self.scenes.get_or_build(places, built)
 
     def route_alone(self, route: Route) -> RouteAlone:
         """Return what a transfer gets that has the network for itself, worked out once."""
@@ -150,8 +165,8 @@ class _Coupled:
     ) -> None:
         self._paths, self._routes, self._on_air = paths, routes, on_air
         places = [paths.place[link] for link in on_air]
-        self._scene = scene_of(paths.plant, places)
-        self._solver = FixedPoint(self._scene, forms_for(STEPS, len(on_air)))
+        self._scene, statics = paths.scene(tuple(places))
+        self._solver = FixedPoint(self._scene, forms_for(STEPS, len(on_air)), statics)
         stations = self._scene.station.tolist()
         wires = {link: -1 - link for link in used if paths.place[link] < 0}
         self._sharing = Sharing(routes, dict(zip(on_air, stations, strict=True)) | wires)
@@ -172,6 +187,8 @@ class _Coupled:
             able_MBps = self._solver.step(number) * self._scale
             self._able_MBps.update(zip(self._on_air, able_MBps.tolist(), strict=True))
             answer = self._sharing.divide(self._able_MBps)
+            if number == STEPS - 1:
+                break
             load_MBps = self._load_MBps(answer)
             busy = self._busy(load_MBps, able_MBps)
             activity = np.exp(GAIN * np.log(busy) + (1.0 - GAIN) * np.log(activity))

@@ -50,7 +50,7 @@ def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
         row = masks.row[at]
         for held in range(len(terms)):
             for kind in range(KINDS):
-                terms[held, kind] = weight[row, held] if masks.subsets[at, held, kind] else 0.0
+                terms[held, kind] = masks.subsets[at, held, kind] * weight[row, held]
         half = len(terms) // 2
         while half:
             for held in range(half):
