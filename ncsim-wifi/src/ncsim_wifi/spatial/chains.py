@@ -132,10 +132,10 @@ def eliminated(flow: FloatArray) -> FloatArray:
         leaves = np.add.accumulate(flow[last, :last], axis=0)[-1]
         flow[:last, last] /= leaves
         flow[:last, :last] += flow[:last, last, None] * flow[last, None, :last]
-    result = np.ones((len(flow), flow.shape[2]))
-    for state in range(1, len(flow)):
-        inflow = result[:state] * flow[:state, state]
-        result[state] = np.add.accumulate(inflow, axis=0)[-1]
+    result: FloatArray = flow[0].copy()
+    result[0] = 1.0
+    for state in range(1, len(flow) - 1):
+        result[state + 1 :] += result[state] * flow[state, state + 1 :]
     return result
 
 
@@ -170,12 +170,10 @@ def _into_interior(rate: FloatArray, out: FloatArray, step: tuple[int, int]) -> 
 def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:
     """Return the rates into boundary states, by that and by that of origin, (13, chains, 13)."""
     last = STAGES - 1
-    inflow = np.zeros((BOUNDARY, *spread.shape[2:]))
+    inflow = np.empty((BOUNDARY, *spread.shape[2:]))
     top = inflow[:STAGES]  # states (0, b)
-    side = np.zeros_like(top)  # states (a, 0)
-    for stage in range(STAGES):
-        top += rates.success_a[stage] * spread[stage]
-        side += rates.success_b[:, stage] * spread[:, stage]
+    np.add.reduce(rates.success_a * spread, axis=0, out=top)
+    side = np.add.reduce(rates.success_b * spread, axis=1)  # states (a, 0)
     top += rates.loss_a[last] * spread[last]
     top[1:] += rates.loss_b[0, :-1] * spread[0, :-1]
     top[1:] += rates.common[last, :-1] * spread[last, :-1]

@@ -104,8 +104,10 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
     free = ~sets.blocks[row[relation]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
-    masks = np.stack([with_it & free, with_it, without & free, without], axis=2)
-    return GateMasks(relation, row[relation], masks.astype(np.float64))
+    masks = np.empty((*free.shape, KINDS))
+    for kind, mask in enumerate((with_it & free, with_it, without & free, without)):
+        masks[:, :, kind] = mask
+    return GateMasks(relation, row[relation], masks)
 
 
 class Silencing(NamedTuple):

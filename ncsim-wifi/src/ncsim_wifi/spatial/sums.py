@@ -7,7 +7,6 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
 
-
 MANY_ROWS = 30
 """From here on a copy on its side is worth it: of two axes, numpy adds along the first in order."""
 
