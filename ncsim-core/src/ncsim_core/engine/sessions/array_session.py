@@ -123,6 +123,5 @@ class ArraySession(TabledSession):
         return share_row.factor(contenders + 1), window
 
     @override
-    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
-        loads: list[int] = self._load[list(links)].tolist()
-        return loads
+    def _load_of(self, link: LinkIndex) -> int:
+        return int(self._load[link])

@@ -16,6 +16,7 @@ from ncsim_core.engine.sessions.loads import Loads
 from ncsim_core.network import LinkIndex
 
 MAX_TOGGLED: Final = 10_000
+MAX_KNOWN: Final = 10_000
 
 
 class TabledSession(InterferenceSession):
@@ -29,10 +30,11 @@ class TabledSession(InterferenceSession):
         self._loads = loads
         self._active_mask = 0  # as of the last time that anybody asked
         self._toggled: list[LinkIndex] = []  # since then
+        self._known: dict[tuple[LinkIndex, int], Competition] = {}  # by link and active ones about
 
     @abstractmethod
-    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
-        """Return the loads of active links."""
+    def _load_of(self, link: LinkIndex) -> int:
+        """Return the load of an active link."""
 
     def _toggle(self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]) -> None:
         """Note which links are switched, for the case that somebody asks about competition."""
@@ -52,12 +54,20 @@ class TabledSession(InterferenceSession):
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
         self._bring_mask_up_to_date()
         loads, tables, active_mask = self._loads, self._loads.tables, self._active_mask
-        count_shift, units_mask = loads.count_shift, loads.units_mask
+        count_shift, units_mask, known = loads.count_shift, loads.units_mask, self._known
         told = []
-        for link, load in zip(links, self._loads_of(links), strict=True):
-            contenders = load >> count_shift
-            affecting = (active_mask & loads.affecting_mask(link)).bit_count()
-            level = bisect_left(tables.limits[link], load & units_mask)
-            hidden_factor = tables.hidden_factors[link][level]
-            told.append(competition_of((contenders, affecting - contenders, hidden_factor)))
+        for link in links:
+            affecting = active_mask & loads.affecting_mask(link)
+            competition = known.get((link, affecting))  # what it is up against follows from these
+            if competition is None:
+                load = self._load_of(link)
+                contenders, hidden_units = load >> count_shift, load & units_mask
+                level = bisect_left(tables.limits[link], hidden_units)
+                hidden = affecting.bit_count() - contenders
+                competition = competition_of(
+                    (contenders, hidden, tables.hidden_factors[link][level])
+                )
+                if len(known) < MAX_KNOWN:
+                    known[link, affecting] = competition
+            told.append(competition)
         return told
