@@ -21,17 +21,15 @@ def node_rows(network: Network) -> tuple[NodeRow, ...]:
 
 def link_rows(network: Network) -> tuple[LinkRow, ...]:
     """Return the links as the header lists them, with their clean rates."""
-    return tuple(
-        LinkRow(
-            link.id,
-            network.sources[index],
-            network.targets[index],
-            float(network.bandwidth_MBps[index]),
-            float(network.latency_s[index]),
-            link.medium,
-        )
-        for index, link in enumerate(network.links)
+    columns = (
+        [link.id for link in network.links],
+        network.sources,
+        network.targets,
+        map(float, network.bandwidth_MBps),
+        map(float, network.latency_s),
+        [link.medium for link in network.links],
     )
+    return tuple(map(LinkRow._make, zip(*columns, strict=True)))
 
 
 def injected_record(setup: Setup, at_us: Instant, dag: int) -> Injected:
