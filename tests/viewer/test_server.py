@@ -169,7 +169,7 @@ def test_ctrl_c_ends_the_server_cleanly_with_all_that_it_started(tmp_path):
             stream.request("GET", f"/api/stream?run=long&token={server[2]}")
             stream.getresponse().readline()
             process.send_signal(signal.SIGINT)
-            _, complaint = process.communicate(timeout=20)
+            _, complaint = process.communicate(timeout=60)
 
         assert (process.returncode, complaint) == (0, "")
         assert ends(child)
