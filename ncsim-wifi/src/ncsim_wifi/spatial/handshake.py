@@ -170,7 +170,7 @@ def unaware_survival(
     """
     into = starts[scene.station] * unread.exposed * answered[:, None]  # (l, w)
     survives = (1.0 - into * unread.kill).prod(axis=1)
-    per_us = (scene.link_of_station * attempts) @ into * rate_per_us[:, None]
+    per_us = scene.station_means(attempts, into) * rate_per_us[:, None]
     part = (per_us / rate_per_us).T[scene.station]  # of attempts of l, into exchanges of u
     own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
     return np.asarray(survives * (1.0 - own_lost))

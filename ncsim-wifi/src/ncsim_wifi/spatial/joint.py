@@ -118,7 +118,7 @@ class JointStages:
         self._add(hit, side, weight * hit_r)
         self._add(share, side, weight * share_r)
         self._add(grows, side, weight * grows_r)
-        per_station = (self._scene.link_of_station * attempts) @ total
+        per_station = self._scene.station_means(attempts, total)
         other = per_station[self._station]
         rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
         self._add(other, side, weight * (rest - total[link]))

@@ -198,9 +198,10 @@ class OccupancyModel:
 
     @staticmethod
     def _write(found: Occupancy, stations: IntArray, within: Occupancy) -> None:
-        rows = stations[:, None]
+        pairs = (stations[:, None] * len(found.idle) + stations).ravel()
         found.idle[stations] = within.idle
-        found.clear[rows, stations], found.on[rows, stations] = within.clear, within.on
+        found.clear.reshape(-1)[pairs] = within.clear.ravel()
+        found.on.reshape(-1)[pairs] = within.on.ravel()
 
 
 def _table_of(

@@ -54,6 +54,17 @@ class Scene:
         """Return for each station the sum over its links."""
         return np.asarray(np.bincount(self.station, values, self.station_count), np.float64)
 
+    def station_means(self, attempts: FloatArray, values: FloatArray) -> FloatArray:
+        """Return for each station the mean over its links.
+
+        Args:
+            attempts: a_l, the share of each link in the attempts of its station.
+            values: Shape (links, any).
+        """
+        if self.station_count == len(self.links):  # the shares are 1, the order is the same
+            return values
+        return np.asarray((self.link_of_station * attempts) @ values)
+
     @cached_property
     def scheme(self) -> IntArray:
         """Return the row of the hazard table of each link."""
@@ -168,16 +179,6 @@ class Scene:
         power_dBm = self.plant.power_dBm[np.ix_(self.station_node, self.station_node)]
         ratio_dB = power_dBm[self.station] - self.settings.noise_dBm
         return np.asarray(hazard(self.scheme[:, None], ratio_dB) < MAX_HAZARD_TO_DECODE)
-
-    @cached_property
-    def hears_as_number(self) -> FloatArray:
-        """Return ``hears_receiver`` as 0 and 1."""
-        return self.hears_receiver.astype(np.float64)
-
-    @cached_property
-    def decodes_as_number(self) -> FloatArray:
-        """Return ``decodes`` as 0 and 1."""
-        return self.decodes.astype(np.float64)
 
     @cached_property
     def degree(self) -> FloatArray:

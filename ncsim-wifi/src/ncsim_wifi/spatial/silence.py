@@ -28,50 +28,63 @@ class Silence(NamedTuple):
     deviation_us: FloatArray
 
 
-def silence_us(
-    overhead_us: FloatArray, missed: FloatArray, *, hears: FloatArray, decodes: FloatArray
-) -> FloatArray:
+class Heard(NamedTuple):
+    """What stations make of exchanges, whatever else they do; shape (links, stations).
+
+    Args:
+        answered_us: Their silence after data whose acknowledgement they hear, 0 after others.
+        unheard: 1 where they do not hear it.
+        noticed_us: Their silence after a frame that they noticed, without acknowledgement.
+    """
+
+    answered_us: FloatArray
+    unheard: FloatArray
+    noticed_us: FloatArray
+
+
+def heard_of(scene: Scene) -> Heard:
+    """Return what stations make of exchanges (MODEL 3.4)."""
+    overhead_us = scene.overhead_us[:, None]
+    hears, decodes = (each.astype(np.float64) for each in (scene.hears_receiver, scene.decodes))
+    noticed_us = decodes * overhead_us + (1.0 - decodes) * (AIFS_us + EIFS_AFTER_LOSS_us)
+    return Heard(hears * overhead_us, 1.0 - hears, noticed_us)
+
+
+def silence_us(heard: Heard, missed: FloatArray) -> FloatArray:
     """Return bl[l, w], how long w stays silent after data of link l.
 
     Source: MODEL 3.4.
 
     Args:
-        overhead_us: ovh of the link.
+        heard: What stations make of exchanges.
         missed: Probability that w was busy when the frame began and never locked on it.
-        hears: 1 where w hears the acknowledgement.
-        decodes: 1 where w understands the frame.
     """
-    understood_us = decodes * overhead_us + (1.0 - decodes) * (AIFS_us + EIFS_AFTER_LOSS_us)
-    unheard_us = missed * AIFS_us + (1.0 - missed) * understood_us
-    return hears * overhead_us + (1.0 - hears) * unheard_us
+    return heard.answered_us + heard.unheard * (
+        missed * AIFS_us + (1.0 - missed) * heard.noticed_us
+    )
 
 
 def silence_of(
-    scene: Scene, clear: FloatArray, attempts: FloatArray, answered: FloatArray
+    scene: Scene, heard: Heard, clear: FloatArray, attempts: FloatArray, answered: FloatArray
 ) -> Silence:
     """Return the silence after frames of each station.
 
     Args:
         scene: The active links.
+        heard: What stations make of exchanges.
         clear: C of the occupancy.
         attempts: a_l, the share of each link in the attempts of its station.
         answered: Part of the RTS of each link that are answered, 1 without RTS/CTS.
     """
     missed = np.minimum(np.maximum(1.0 - clear[scene.station], 0.0), 1.0)
-    per_link_us = silence_us(
-        scene.overhead_us[:, None],
-        missed,
-        hears=scene.hears_as_number,
-        decodes=scene.decodes_as_number,
-    )
+    per_link_us = silence_us(heard, missed)
     if scene.settings.rts_cts:
         part = answered[:, None]
         per_link_us = part * per_link_us + (1.0 - part) * (NAV_TIMEOUT_us + AIFS_us)
-    own = scene.link_of_station * attempts
     overhead_us = scene.station_sums(attempts * scene.overhead_us)
     if not scene.settings.terms.silence:
         return Silence(overhead_us, np.zeros_like(clear))
-    per_station_us = own @ per_link_us
+    per_station_us = scene.station_means(attempts, per_link_us)
     degree = scene.degree
     sums_us = np.add.reduce(per_station_us * scene.senses, axis=1)
     mean_us = np.where(degree > 0.0, sums_us / np.maximum(degree, 1.0), overhead_us)

@@ -141,7 +141,9 @@ class FixedPoint:
         gain = self._scene.settings.approximations.gain
         self._clear = gain * np.minimum(occupancy.clear, 1.0) + (1.0 - gain) * self._clear
         traffic = self._traffic(count, attempts, occupancy, times)
-        fresh = silence_of(self._scene, self._clear, self._attempts, self._answered)
+        fresh = silence_of(
+            self._scene, self._statics.heard, self._clear, self._attempts, self._answered
+        )
         self._silence = Silence(
             *(
                 gain * new + (1.0 - gain) * old
@@ -260,8 +262,8 @@ class FixedPoint:
         fresh = (self._link_stages * by_stage).sum(axis=1)
         self._answered = gain * fresh + (1.0 - gain) * self._answered
         after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
-        own = scene.link_of_station * self._attempts
-        heard_us = own @ (statics.silenced * after_cts_us[:, None])  # (w, u)
+        silenced_us = statics.silenced * after_cts_us[:, None]
+        heard_us = scene.station_means(self._attempts, silenced_us)  # (w, u)
         on = np.clip(traffic.on * (heard_us / traffic.times.busy_us[:, None]).T, 0.0, LARGEST_ON)
         silenced = 1.0 - (1.0 - on).prod(axis=1)
         self._silenced += gain * (silenced - self._silenced)
@@ -275,7 +277,7 @@ class FixedPoint:
         per_packet = self._packets / self._link_stages[:, 0]
         own = self._scene.station_sums(per_packet)
         self._attempts = per_packet / own[self._scene.station]
-        self._stages = (self._scene.link_of_station * self._attempts) @ self._link_stages
+        self._stages = self._scene.station_means(self._attempts, self._link_stages)
         self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
 
     def _success(

@@ -30,6 +30,7 @@ from ncsim_wifi.spatial.relations import (
     hostile_relations,
 )
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.silence import Heard, heard_of
 
 LETHAL_BURST = 0.5  # an RTS that kills the data that it meets; hardly ever in between
 
@@ -54,6 +55,7 @@ class Statics:
 
     Args:
         senses: S as numbers.
+        heard: What stations make of exchanges.
         occupancy: Who is on the air together.
         hostile: Hidden relations.
         own: The station that sends on the link of each relation.
@@ -86,6 +88,7 @@ class Statics:
     """
 
     senses: FloatArray
+    heard: Heard
     occupancy: OccupancyModel
     hostile: Hostile
     own: IntArray
@@ -129,6 +132,7 @@ def statics_of(scene: Scene) -> Statics:
     window_us = _windows_us(scene, hostile, noticed_us)
     return Statics(
         scene.senses.astype(np.float64),
+        heard_of(scene),
         occupancy_of(scene.senses, scene.settings.approximations.max_sets),
         hostile,
         own,

@@ -45,19 +45,22 @@ def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArra
 def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation."""
     result = np.ones(count)
-    terms = np.empty((weight.shape[1], KINDS))
+    half = weight.shape[1] // 2
+    terms = np.empty(half * KINDS)
     for at in range(len(masks.relation)):
-        row = masks.row[at]
-        for held in range(len(terms)):
+        subsets, row = masks.subsets[at], weight[masks.row[at]]
+        for held in range(half):
+            one, two = row[held], row[half + held]
             for kind in range(KINDS):
-                terms[held, kind] = masks.subsets[at, held, kind] * weight[row, held]
-        half = len(terms) // 2
-        while half:
-            for held in range(half):
-                for kind in range(KINDS):
-                    terms[held, kind] += terms[half + held, kind]
-            half //= 2
-        with_it = terms[0, 0] / (terms[0, 1] + TINY)
-        without = terms[0, 2] / (terms[0, 3] + TINY)
+                terms[held * KINDS + kind] = (
+                    subsets[held, kind] * one + subsets[half + held, kind] * two
+                )
+        width = len(terms) // 2
+        while width >= KINDS:
+            for place in range(width):
+                terms[place] += terms[width + place]
+            width //= 2
+        with_it = terms[0] / (terms[1] + TINY)
+        without = terms[2] / (terms[3] + TINY)
         result[masks.relation[at]] = min(1.0, with_it / max(without, TINY))
     return result
