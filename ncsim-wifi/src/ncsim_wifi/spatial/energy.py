@@ -74,14 +74,14 @@ class GateMasks(NamedTuple):
     Args:
         relation: The relations.
         row: The energy set of the station that is silenced.
-        subsets: 1 where it is one with the other party of the relation, and without other
+        subsets: Whether it is one with the other party of the relation, and without other
             hostile stations, that leaves the channel free; one of all these; one to compare with
             that leaves it free; one of all these; shape (relations, subsets, 4).
     """
 
     relation: IntArray
     row: IntArray
-    subsets: FloatArray
+    subsets: BoolArray
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
@@ -104,7 +104,7 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
     free = ~sets.blocks[row[relation]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
-    masks = np.empty((*free.shape, KINDS))
+    masks = np.empty((*free.shape, KINDS), np.bool_)
     for kind, mask in enumerate((with_it & free, with_it, without & free, without)):
         masks[:, :, kind] = mask
     return GateMasks(relation, row[relation], masks)

@@ -52,9 +52,9 @@ def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
         for held in range(half):
             one, two = row[held], row[half + held]
             for kind in range(KINDS):
-                terms[held * KINDS + kind] = (
-                    subsets[held, kind] * one + subsets[half + held, kind] * two
-                )
+                first = one if subsets[held, kind] else 0.0
+                second = two if subsets[half + held, kind] else 0.0
+                terms[held * KINDS + kind] = first + second
         width = len(terms) // 2
         while width >= KINDS:
             for place in range(width):
