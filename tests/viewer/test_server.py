@@ -41,7 +41,8 @@ def scenario(dags):
 
 
 def ncsim(*arguments, **options):
-    main = "from ncsim_core.cli.main import main; main()"
+    listen = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    main = f"{listen}; from ncsim_core.cli.main import main; main()"  # a shell may ignore Ctrl-C
     command = [sys.executable, "-c", main, *map(str, arguments)]
     return subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
