@@ -2,6 +2,9 @@
 
 import io
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 from ncsim_core.errors import PlacementError
@@ -77,7 +80,6 @@ def test_serving_answers_line_by_line():
     assert [json.loads(line) for line in lines] == [{"placement": plan_with_saga(request)}] * 2
 
 
-@pytest.mark.xfail(reason="z3 now and then gives another of equally good plans", strict=False)
 def test_smt_answers_the_same_whatever_it_was_asked_before():
     network = network_of([None] * 3, [(0, 1), (0, 2), (1, 2)], capacities=[100.0, 100.0, 50.0])
     scheduler = SagaScheduler(make_context(network), name="smt")
@@ -86,3 +88,24 @@ def test_smt_answers_the_same_whatever_it_was_asked_before():
     first, _, again = (scheduler.schedule(dag, make_snapshot(network)) for dag in dags)
 
     assert first == again
+
+
+def test_smt_answers_the_same_whenever_garbage_is_due():
+    code = (
+        "import gc, sys; gc.set_threshold(int(sys.argv[1]));"
+        "from ncsim_saga.planning import PlanRequest, plan_with_saga;"
+        "print(plan_with_saga(PlanRequest.from_json(sys.stdin.read())))"
+    )
+    network = network_of([None] * 3, [(0, 1), (0, 2), (1, 2)], capacities=[100.0, 100.0, 50.0])
+    request = PlanRequest("smt", virtual_network(make_snapshot(network)), chain(2)).to_json()
+
+    plans = {
+        subprocess.run(
+            [sys.executable, "-c", code, threshold],
+            input=request, capture_output=True, text=True, check=True,
+            env=os.environ | {"PYTHONHASHSEED": "0"},
+        ).stdout
+        for threshold in ("300", "700", "100000")
+    }  # fmt: skip
+
+    assert len(plans) == 1

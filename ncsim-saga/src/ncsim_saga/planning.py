@@ -3,6 +3,7 @@
 A request says all that the answer depends on, and travels to a child process as JSON.
 """
 
+import gc
 import json
 import random
 from collections.abc import Iterator, Mapping
@@ -124,6 +125,8 @@ def _as_if_first(request: PlanRequest) -> Iterator[None]:
 
     SAGA remembers ranks of equal instances although their sets may be walked in another order,
     pySMT numbers its terms over the life of the process, and WBA draws from the global ``random``.
+    SMT's answer depends on when its solver's terms are thrown away, so collecting garbage waits:
+    when it is due depends on all that the process did before, the compiling of modules included.
     """
     from saga.schedulers import cpop
 
@@ -131,9 +134,13 @@ def _as_if_first(request: PlanRequest) -> Iterator[None]:
     drawn_before = random.getstate()
     random.seed(request.seed)
     solver_terms.push_env()
+    collects = gc.isenabled()
+    gc.disable()
     try:
         yield
     finally:
+        if collects:
+            gc.enable()
         solver_terms.pop_env()
         random.setstate(drawn_before)
         cpop.upward_rank.cache_clear()
