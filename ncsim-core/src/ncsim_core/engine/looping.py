@@ -4,12 +4,10 @@ The loop pays for itself only in long runs, since numba takes two seconds to sta
 the runs of a process come to ``WORTH_COMPILING_us``, or at once if numba is loaded.
 """
 
-import os
 import sys
-from functools import cache
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
+from ncsim_core.acceleration import may_compile, numba_starts
 from ncsim_core.engine.sessions.choice import loads_of
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State
@@ -70,24 +68,4 @@ def is_worth_compiling(setup: Setup) -> bool:
     saved_us = SAVED_us if setup.models.interference.tables() is None else SAVED_WITH_RADIO_us
     _saved_so_far_us += saved_us * 2 * len(setup.dependencies)
     is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_COMPILING_us
-    return is_worth and _numba_starts()
-
-
-def may_compile() -> bool:
-    """Return whether numba is installed and ``NCSIM_PURE=1`` does not forbid it."""
-    return os.environ.get("NCSIM_PURE", "") != "1" and _has_numba()
-
-
-@cache
-def _numba_starts() -> bool:
-    """Return whether numba can be imported, beside the numpy that is there, and compiles."""
-    try:
-        import numba
-    except (ImportError, OSError):
-        return False
-    return not getattr(numba.config, "DISABLE_JIT", False)
-
-
-@cache
-def _has_numba() -> bool:
-    return find_spec("numba") is not None
+    return is_worth and numba_starts()

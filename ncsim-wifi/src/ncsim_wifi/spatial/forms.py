@@ -5,13 +5,12 @@ in long work, since numba takes time to start: they are used once the work of a 
 ``WORTH_LOOPS_us``, or at once where numba has been started already.
 """
 
-import os
 import sys
 from collections.abc import Callable
 from functools import cache
-from importlib.util import find_spec
 from typing import Final, NamedTuple
 
+from ncsim_core.acceleration import may_compile, numba_starts
 from ncsim_core.memory import is_memory_limited
 
 from ncsim_wifi.quantities import FloatArray
@@ -74,22 +73,4 @@ def forms_for(steps: int, links: int) -> Forms:
         return ARRAYS
     _saved_so_far_us += SAVED_us * steps * links
     is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_LOOPS_us
-    return compiled_loops() if is_worth and _numba_starts() else ARRAYS
-
-
-def may_compile() -> bool:
-    """Return whether numba is installed and ``NCSIM_PURE=1`` does not forbid it."""
-    return os.environ.get("NCSIM_PURE", "") != "1" and _has_numba()
-
-
-@cache
-def _numba_starts() -> bool:
-    """Return whether numba can be imported, beside the numpy that is there, and compiles."""
-    from ncsim_wifi.spatial.compiled.compiling import NUMBA
-
-    return NUMBA is not None
-
-
-@cache
-def _has_numba() -> bool:
-    return find_spec("numba") is not None
+    return compiled_loops() if is_worth and numba_starts() else ARRAYS

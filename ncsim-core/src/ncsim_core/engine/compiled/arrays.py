@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.layout import ARRAYS, STATE
+from ncsim_core.engine.compiled.records import Record
 
 
 def records(count: int, dtype: "np.dtype[np.void]", **values: float) -> Record:

@@ -7,8 +7,9 @@ stays where it is until it comes to the head, and brought forward, it rises.
 
 from typing import Final
 
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.layout import NONE, entry_at, transfer_at
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.events import TRANSFER_COMPLETE
 from ncsim_core.units import Instant, NEVER_us
 

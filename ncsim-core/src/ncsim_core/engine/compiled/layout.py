@@ -9,7 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from ncsim_core.engine.compiled.compiling import Record, inlined, reader, vector_reader
+from ncsim_core.compiling import inlined
+from ncsim_core.engine.compiled.records import Record, reader, vector_reader
 
 NONE: Final = -1
 NOT_YET: Final = -1

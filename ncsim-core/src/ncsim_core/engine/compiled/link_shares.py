@@ -1,6 +1,6 @@
 """Rates by links: each is shared equally, and a transfer gets the least share on its route."""
 
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.layout import (
     NONE,
     affected_at,
@@ -10,6 +10,7 @@ from ncsim_core.engine.compiled.layout import (
     move_at,
     transfer_at,
 )
+from ncsim_core.engine.compiled.records import Record
 
 
 @inlined

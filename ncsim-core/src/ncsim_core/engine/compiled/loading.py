@@ -7,8 +7,8 @@ import numpy as np
 
 from ncsim_core.engine.compiled import layout
 from ncsim_core.engine.compiled.arrays import Arrays, records
-from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.layout import NONE, NOT_YET
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.setup import Setup
 from ncsim_core.network import NodeIndex, Route
 from ncsim_core.units import NEVER_us, us_from_s

@@ -1,8 +1,9 @@
 """What happened, for observers who are told later."""
 
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.layout import assigned_at, happened_at, link_at, load_at, move_at
 from ncsim_core.engine.compiled.radio import level_of
+from ncsim_core.engine.compiled.records import Record
 
 
 @inlined

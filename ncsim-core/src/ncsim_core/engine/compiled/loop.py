@@ -5,9 +5,10 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Final, TypeAlias
 
-from ncsim_core.engine.compiled.compiling import Record, inlined, kept_on_disk
+from ncsim_core.compiling import inlined, kept_on_disk, state_of
 from ncsim_core.engine.compiled.event_queue import find_due, remove_head
 from ncsim_core.engine.compiled.log import has_room, log_event
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.compiled.tasks import (
     complete_task,
     release_tasks,
@@ -105,8 +106,7 @@ def loop_of(sources: str) -> Loop:
     """Return the loop, compiled and kept on disk if numba is there.
 
     Args:
-        sources: Stands for what it is compiled from. numba looks at this file alone to see whether
-            what it has kept is still good, and at the values that the function encloses.
+        sources: Stands for what it is compiled from; see ``state_of``.
     """
 
     def handle_events(count: int, first: int, end: int, state: Record) -> int:
@@ -121,7 +121,7 @@ def _sources() -> str:
     """Return what changes whenever a file does that the loop is compiled from."""
     here = Path(__file__).parent
     files = [*sorted(here.glob("*.py")), here.parent / "events.py", here.parents[1] / "units.py"]
-    return " ".join(f"{file.stat().st_mtime_ns}-{file.stat().st_size}" for file in files)
+    return state_of(files)
 
 
 handle_events: Final = loop_of(_sources())

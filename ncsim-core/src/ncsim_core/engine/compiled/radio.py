@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.layout import (
     affected_link_at,
     changed_at,
@@ -25,6 +25,7 @@ from ncsim_core.engine.compiled.layout import (
     vector_at,
     window_at,
 )
+from ncsim_core.engine.compiled.records import Record
 
 ALL_BITS: Final = -1
 NOTHING: Final = np.iinfo(np.int64).max

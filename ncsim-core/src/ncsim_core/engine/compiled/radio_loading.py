@@ -9,8 +9,8 @@ import numpy as np
 from ncsim_core.contracts.interference_tables import ShareRow
 from ncsim_core.engine.compiled import layout
 from ncsim_core.engine.compiled.arrays import Arrays, records
-from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.radio import ANYTHING
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.sessions.array_session import MAX_LINKS_OF_MATRIX
 from ncsim_core.engine.sessions.loads import Loads
 

@@ -3,7 +3,7 @@
 from typing import Final
 
 from ncsim_core import units
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.event_queue import complete_at
 from ncsim_core.engine.compiled.layout import (
     NONE,
@@ -16,6 +16,7 @@ from ncsim_core.engine.compiled.layout import (
 from ncsim_core.engine.compiled.link_shares import moves_by_link
 from ncsim_core.engine.compiled.log import log_rates
 from ncsim_core.engine.compiled.radio import look_up, switch_links
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.units import MICROSECONDS_PER_SECOND, NEVER_us
 
 service_time_us: Final = inlined(units.service_time_us)

@@ -3,7 +3,7 @@
 from typing import Final
 
 from ncsim_core import units
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.event_queue import push
 from ncsim_core.engine.compiled.layout import (
     COMPLETED,
@@ -16,6 +16,7 @@ from ncsim_core.engine.compiled.layout import (
     task_at,
     transfer_at,
 )
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.compiled.transfers import create_transfer, deliver_input
 from ncsim_core.engine.events import TASK_COMPLETE, TASK_READY, TASK_START
 

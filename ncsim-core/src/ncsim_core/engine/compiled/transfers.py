@@ -1,8 +1,9 @@
 """Transfers: created when their producer ends, started after latency, completed."""
 
-from ncsim_core.engine.compiled.compiling import Record, inlined
+from ncsim_core.compiling import inlined
 from ncsim_core.engine.compiled.event_queue import complete_at, push, push_transfer
 from ncsim_core.engine.compiled.layout import created_at, task_at, transfer_at
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.compiled.refresh import FINISH, START, go_on, refresh
 from ncsim_core.engine.events import TASK_READY, TRANSFER_START
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ncsim_core.engine.boundary import CheckedQueue
 from ncsim_core.engine.compiled.arrays import Arrays
-from ncsim_core.engine.compiled.compiling import Record
 from ncsim_core.engine.compiled.event_queue import KIND_SHIFT
 from ncsim_core.engine.compiled.layout import NONE
+from ncsim_core.engine.compiled.records import Record
 from ncsim_core.engine.event_queue import EventQueue
 from ncsim_core.engine.events import TRANSFER_COMPLETE, TRANSFER_START
 from ncsim_core.engine.sessions.choice import session_of

@@ -4,6 +4,7 @@ Source: MODEL 3.2; see ``ncsim_wifi.spatial.attempts``.
 """
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.mac.timing import SLOT_us
 from ncsim_wifi.quantities import FloatArray
@@ -16,7 +17,6 @@ from ncsim_wifi.spatial.attempts import (
     Exchange,
     IN_VAIN_us,
 )
-from ncsim_wifi.spatial.compiled.compiling import inlined
 
 
 @inlined

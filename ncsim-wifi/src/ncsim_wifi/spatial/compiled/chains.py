@@ -4,11 +4,11 @@ Source: MODEL 3.10; see ``ncsim_wifi.spatial.chains``.
 """
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.chains import BOUNDARY, Given, SideRates
-from ncsim_wifi.spatial.compiled.compiling import inlined
 
 LAST = STAGES - 1
 KINDS = 5

@@ -4,9 +4,10 @@ Source: MODEL 3.6; see ``ncsim_wifi.spatial.energy``.
 """
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import halving_sum, inlined
+from ncsim_wifi.spatial.compiled.sums import halving_sum
 from ncsim_wifi.spatial.energy import KINDS, TINY, GateMasks, Silenced, Silencing
 
 

@@ -1,18 +1,18 @@
 """The compiled functions that are called from outside, as numba keeps them on disk.
 
-numba looks at the file of a function alone, and at the values that it encloses, to see whether what
-it has kept is still good. So all are made here, and enclose what stands for their sources.
+All are made here, and enclose what stands for their sources: see ``state_of``.
 """
 
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
+from ncsim_core.compiling import kept_on_disk, state_of
+
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
 from ncsim_wifi.spatial.chains import Given, SideRates
 from ncsim_wifi.spatial.compiled import attempts, chains, energy, gaps, occupancy, overlap
-from ncsim_wifi.spatial.compiled.compiling import kept_on_disk
 from ncsim_wifi.spatial.energy import Silenced, Silencing
 from ncsim_wifi.spatial.forms import Forms
 from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows
@@ -102,7 +102,7 @@ def _sources() -> str:
     here = Path(__file__).parent
     files = [*sorted(here.glob("*.py")), *sorted(here.parent.glob("*.py"))]
     files.append(here.parents[1] / "mac" / "timing.py")
-    return " ".join(f"{file.stat().st_mtime_ns}-{file.stat().st_size}" for file in files)
+    return state_of(files)
 
 
 LOOPS: Final = loops_of(_sources())

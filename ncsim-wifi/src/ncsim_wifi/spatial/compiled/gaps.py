@@ -7,12 +7,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.mac.timing import SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.attempts import GAUSS_WEIGHT
 from ncsim_wifi.spatial.backoff import LONGEST_COUNTS, STAGES, WINDOWS
-from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.gaps import NEARLY_ONE, Interferers, Survival, Windows
 
 MOMENTS = 4

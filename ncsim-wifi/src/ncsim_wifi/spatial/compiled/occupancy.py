@@ -4,9 +4,9 @@ Source: MODEL 3.3; see ``ncsim_wifi.spatial.occupancy``.
 """
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.occupancy import FINE, ROUGH, Occupancy, SetTable
 
 

@@ -4,9 +4,9 @@ Source: MODEL 3.7; see ``ncsim_wifi.spatial.overlap``.
 """
 
 import numpy as np
+from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.compiled.compiling import inlined
 from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
 
 

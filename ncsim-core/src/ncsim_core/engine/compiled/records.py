@@ -1,4 +1,4 @@
-"""How the functions of this folder are compiled, and how they read records.
+"""How compiled functions read records.
 
 Arrays are handed over as addresses. numba counts references to every array at every call, which
 took ten times as long as what the functions do, and half a minute to compile.
@@ -6,49 +6,14 @@ took ten times as long as what the functions do, and half a minute to compile.
 
 import ctypes
 from collections.abc import Callable
-from types import ModuleType
-from typing import Any, Final, TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-F = TypeVar("F", bound=Callable[..., object])
+from ncsim_core.compiling import NUMBA, inlined
 
 Record: TypeAlias = Any
 """``record.field`` reads and writes; numpy's types do not know the fields."""
-
-
-def _numba() -> ModuleType | None:
-    try:
-        import numba
-    except (ImportError, OSError):
-        return None
-    module: ModuleType = numba
-    return None if module.config.DISABLE_JIT else module  # those set it who look for a fault
-
-
-NUMBA: Final = _numba()
-
-
-def inlined(function: F) -> F:
-    """Return a function to be compiled with its callers; as it is without numba.
-
-    Not kept on disk: what is kept is the loop, of which it becomes part. Only compiled functions
-    may call it, since it has no wrappers for others.
-    """
-    if NUMBA is None:
-        return function
-    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return cast("F", NUMBA.njit(**options)(function))
-
-
-def kept_on_disk(function: F) -> F:
-    """Return a function compiled, and kept where that is possible; as it is without numba."""
-    if NUMBA is None:
-        return function
-    try:
-        return cast("F", NUMBA.njit(cache=True, error_model="numpy")(function))
-    except RuntimeError:  # no folder to keep it in
-        return cast("F", NUMBA.njit(error_model="numpy")(function))
 
 
 def reader(dtype: "np.dtype[np.void]") -> Callable[[int], Record]:

@@ -1,10 +1,9 @@
-"""How loops are compiled."""
+"""How functions are compiled, here and in plug-ins; importing this starts numba if it is there."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from types import ModuleType
 from typing import Final, TypeVar, cast
-
-from ncsim_wifi.quantities import FloatArray
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -24,7 +23,8 @@ NUMBA: Final = _numba()
 def inlined(function: F) -> F:
     """Return a function to be compiled with its callers; as it is without numba.
 
-    Not kept on disk: only compiled functions may call it, and become part of what is kept.
+    Not kept on disk: only compiled functions may call it, since it has no wrappers for others, and
+    become part of what is kept.
     """
     if NUMBA is None:
         return function
@@ -42,12 +42,11 @@ def kept_on_disk(function: F) -> F:
         return cast("F", NUMBA.njit(error_model="numpy")(function))
 
 
-@inlined
-def halving_sum(terms: FloatArray) -> float:
-    """Return the sum of a power of two of terms, which are overwritten: first plus second half."""
-    half = len(terms) // 2
-    while half:
-        for place in range(half):
-            terms[place] += terms[half + place]
-        half //= 2
-    return float(terms[0])
+def state_of(sources: Iterable[Path]) -> str:
+    """Return what changes whenever a source file does.
+
+    numba looks at the file of a kept function alone, and at the values that it encloses, to see
+    whether what it has kept is still good; so it has to enclose this.
+    """
+    states = [file.stat() for file in (*sources, Path(__file__))]
+    return " ".join(f"{state.st_mtime_ns}-{state.st_size}" for state in states)
