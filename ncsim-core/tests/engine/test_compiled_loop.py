@@ -258,7 +258,7 @@ def test_without_numba_the_same_functions_run_as_plain_python():
     code = """
 from hypothesis import Phase, given, settings
 from ncsim_core.engine import looping
-from ncsim_core.engine.compiled import compiling
+from ncsim_core import compiling
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.testing.engine_cases import engine_cases
 from ncsim_core.api import result_of
