@@ -54,6 +54,7 @@ def test_the_runs_of_the_folder_are_listed_opened_and_compared(served, open_page
     page.get_by_role("button", name="with full").click()
     until(page, "ncsimViewer.page.source.other !== null")
     assert page.locator("nav button[aria-current=page]").inner_text() == "8 Compare"
+    until(page, "location.hash.includes('b=solo')")  # the address follows a moment later
     address = page.url
     page.reload()
     until(page, "window.ncsimViewer && ncsimViewer.page.source.other !== null")
