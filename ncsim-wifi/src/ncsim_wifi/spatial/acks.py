@@ -10,6 +10,7 @@ import numpy as np
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, dBm_from_mW
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_products
 
 LEAST_HAZARD = 0.05
 CONTROL_RATIOS_dB = np.array([0.0, 6.0, 6.5, 7.0, 7.5, 8.0, 8.5, 9.0, 10.0])
@@ -126,4 +127,4 @@ def heard_answers(deaf: FloatArray, sending: FloatArray) -> FloatArray:
         sending: How likely it sends although the data were received.
     """
     part = np.minimum(np.maximum(sending, 0.0), 1.0)
-    return np.asarray(np.multiply.reduce(1.0 - deaf * part, axis=1))
+    return row_products(1.0 - deaf * part)

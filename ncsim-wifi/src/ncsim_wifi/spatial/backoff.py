@@ -3,6 +3,7 @@
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.sums import row_sums
 
 STAGES = 7  # attempts 0..6; after seven failures the window starts anew (MODEL 1)
 WINDOWS = np.minimum(16.0 * 2.0 ** np.arange(STAGES), 1024.0)
@@ -22,7 +23,7 @@ def mean_count(stage_visits: FloatArray) -> FloatArray:
     >>> float(mean_count(np.eye(7)[0]))
     7.5
     """
-    return np.asarray(stage_visits @ MEAN_COUNTS)
+    return row_sums(stage_visits * MEAN_COUNTS)
 
 
 def attempt_probability(count: FloatArray) -> FloatArray:

@@ -58,55 +58,70 @@ class CliqueBelief:
     closed: FloatArray
 
     @cached_property
-    def _clique_starts(self) -> IntArray:
-        return np.flatnonzero(np.diff(self.clique, prepend=-1))
+    def clique_count(self) -> int:
+        """Return the number of cliques."""
+        return int(self.clique[-1]) + 1
 
     @cached_property
-    def _by_station(self) -> tuple[IntArray, IntArray]:
+    def by_station(self) -> tuple[IntArray, IntArray]:
         """Return the entries in the order of stations, and where those of each begin."""
         order = np.argsort(self.station, kind="stable")
         return order, np.flatnonzero(np.diff(self.station[order], prepend=-1))
 
     @cached_property
-    def _near(self) -> FloatArray:
-        """Return 1 where a station is or senses that of an entry, shape (stations, entries)."""
-        return self.closed[:, self.station]
+    def _is_far(self) -> FloatArray:
+        """Return 0 where a station is or senses that of an entry, shape (stations, entries)."""
+        return 1.0 - self.closed[:, self.station]
+
+    @cached_property
+    def _cells(self) -> IntArray:
+        """Return the place of each entry among the cliques as each station sees them."""
+        first = np.arange(len(self.closed)) * self.clique_count
+        return np.asarray((first[:, None] + self.clique).ravel())
 
     def __call__(self, activity: FloatArray) -> "Occupancy":
         """Return the occupancy for rho, the activity of each station."""
         from ncsim_wifi.spatial.occupancy import Occupancy
 
         odds = self._odds(activity)
-        total = np.add.reduceat(odds, self._clique_starts)[self.clique]
-        on_odds = activity * np.exp(np.bincount(self.station, -np.log1p(total - odds)))
+        on_odds = activity / self._by_cliques(self._without(odds))
         idle = on_odds / (1.0 + on_odds) / activity
-        share = np.exp(self._field(odds))
+        share = 1.0 / self._field(odds)
         on = activity * share / (1.0 + activity * share)
         clear = np.where(self.closed > 0.0, share, on / activity)
         np.fill_diagonal(clear, 1.0)
         return Occupancy(idle, clear, np.where(self.closed > 0.0, 0.0, on))
 
+    def _without(self, odds: FloatArray) -> FloatArray:
+        """Return one and the odds of the other members of the clique of each entry."""
+        total = np.bincount(self.clique, odds)[self.clique]
+        return np.asarray(1.0 + (total - odds))
+
+    def _by_cliques(self, factors: FloatArray) -> FloatArray:
+        """Return the product over the cliques of each station."""
+        order, starts = self.by_station
+        return np.asarray(np.multiply.reduceat(factors[..., order], starts, axis=-1))
+
     def _field(self, odds: FloatArray) -> FloatArray:
-        """Return ln of how likely k finds its cliques free, given that i and its neighbours are.
+        """Return by what k seldom finds its cliques free, given that i and its neighbours are.
 
         Returns:
-            Shape (stations i, stations k).
+            Shape (stations i, stations k), 1 or more.
         """
-        order, starts = self._by_station
-        far = (1.0 - self._near) * odds
-        left = np.add.reduceat(far, self._clique_starts, axis=1)[:, self.clique] - far
-        logs = np.log1p(np.maximum(left, 0.0))
-        return -np.add.reduceat(logs[:, order], starts, axis=1)
+        far = self._is_far * odds
+        cliques = len(far), self.clique_count
+        total = np.bincount(self._cells, far.ravel(), cliques[0] * cliques[1]).reshape(cliques)
+        left = total[:, self.clique] - far
+        return self._by_cliques(1.0 + np.maximum(left, 0.0))
 
     def _odds(self, activity: FloatArray) -> FloatArray:
         """Return mu, what the station of each entry tells its clique."""
         alone = activity[self.station]
         odds = alone
         for _ in range(MAX_SWEEPS):
-            total = np.add.reduceat(odds, self._clique_starts)[self.clique]
-            downward = np.log1p(total - odds)
-            heard = np.bincount(self.station, downward)[self.station] - downward
-            fresh = alone * np.exp(-heard)
+            downward = self._without(odds)
+            heard = self._by_cliques(downward)[self.station] / downward
+            fresh = alone / heard
             moved = np.maximum.reduce(np.abs(fresh - odds))
             odds = DAMPING * odds + (1.0 - DAMPING) * fresh
             if moved < ACCURACY:

@@ -9,6 +9,7 @@ from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.relations import RTS_RATIO_dB
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_products
 
 
 def same_slot_loss(scene: Scene, noise_mW: FloatArray) -> FloatArray:
@@ -43,7 +44,7 @@ def _ratio_dB(scene: Scene, noise_mW: FloatArray) -> FloatArray:
 
 
 def base_success(
-    scene: Scene, noise_hazard: FloatArray, same_slot: FloatArray, loss: FloatArray
+    scene: Scene, spared: FloatArray, same_slot: FloatArray, loss: FloatArray
 ) -> FloatArray:
     """Return base_l, the part of frames that noise and same-slot collisions leave.
 
@@ -51,12 +52,12 @@ def base_success(
 
     Args:
         scene: The active links.
-        noise_hazard: h_noise of each link.
+        spared: exp(-h_noise) of each link.
         same_slot: p[u, w].
         loss: sync[l, w].
     """
     if not scene.settings.terms.same_slot_collisions:
-        return np.where(scene.is_alive, np.exp(-noise_hazard), 0.0)
+        return np.where(scene.is_alive, spared, 0.0)
     meets = (same_slot * scene.hears_by_power)[scene.station]  # others by CTS: see losses
-    survivors = np.multiply.reduce(1.0 - meets * loss, axis=1)
-    return np.where(scene.is_alive, np.exp(-noise_hazard) * survivors, 0.0)
+    survivors = row_products(1.0 - meets * loss)
+    return np.where(scene.is_alive, spared * survivors, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import SLOT_us
 from ncsim_wifi.quantities import BoolArray, FloatArray
-from ncsim_wifi.spatial.attempts import GAUSS_AT, GAUSS_WEIGHT
+from ncsim_wifi.spatial.attempts import GAUSS_WEIGHT
 from ncsim_wifi.spatial.backoff import LONGEST_COUNTS, STAGES, WINDOWS
 from ncsim_wifi.spatial.sums import row_sums
 
@@ -247,25 +247,23 @@ class Windows(NamedTuple):
 
 
 def windows_of(
-    window_us: FloatArray, protected_us: FloatArray, hazard: FloatArray, immune: FloatArray
+    window_us: FloatArray, protected_us: FloatArray, lethal: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return windows that are left when a random part of the payload may be overlapped.
 
     A frame dies once the overlapped part of its payload reaches a random length, which the
-    hazard gives; three Gauss points stand for it.
+    hazard h gives; three Gauss points stand for it, -ln(1 - x (1 - exp(-h))) / h.
 
     Source: MODEL 3.8, X_i.
 
     Args:
         window_us: V_r, shape (relations,).
         protected_us: V_p of the link.
-        hazard: h_r.
-        immune: exp(-h_r).
+        lethal: That length as part of the payload, shape (3, relations).
 
     Returns:
         The windows, shape (4, relations), and the lengths, shape (3, relations).
     """
-    lethal = -np.log1p(-GAUSS_AT[:, None] * (1.0 - immune)) / hazard
     borne_us = np.minimum(1.0, lethal) * protected_us
     return np.concatenate([window_us[None], window_us - borne_us]), borne_us
 

@@ -18,6 +18,7 @@ from ncsim_wifi.spatial.backoff import WINDOWS
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_products, row_sums
 
 DETECTION_us = 4.0  # of a preamble
 PHY_RX_START_us = 20.0  # of a legacy OFDM frame
@@ -95,7 +96,7 @@ def fate_of(scene: Scene, hostile: Hostile, hazard_alone: FloatArray, rts_ratio_
     return Fate(at_receiver_dB >= rts_ratio_dB, at_sender_dB >= rts_ratio_dB, kill)
 
 
-SLOTS_IN_GAP = 2.0  # counts that end after AIFS, before the data that follow an unheard CTS
+LARGEST_ON = 0.97
 
 
 class Unread(NamedTuple):
@@ -139,15 +140,19 @@ def unaware_starts(
 ) -> FloatArray:
     """Return how often w begins within an exchange of u that it senses, shape (u, w).
 
+    Counts that end in either of two slots after AIFS end before the data after an unheard CTS.
+
     Args:
         unread: Who may.
         on: Probability that x is sending while u may count, shape (u, x).
         clear: C of the occupancy.
         tau: Probability of an attempt per decision.
     """
-    logs = np.log1p(-np.clip(on, 0.0, 0.97))
-    missed = -np.expm1(np.einsum("uwx,ux->uw", unread.spoilt.astype(np.float64), logs))
-    return np.asarray(missed * clear * (1.0 - (1.0 - tau) ** SLOTS_IN_GAP))
+    off = 1.0 - np.minimum(np.maximum(on, 0.0), LARGEST_ON)
+    spares = np.where(unread.spoilt, off[:, None, :], 1.0)
+    missed = 1.0 - np.multiply.accumulate(spares, axis=2)[:, :, -1]
+    waits = 1.0 - tau
+    return np.asarray(missed * clear * (1.0 - waits * waits))
 
 
 def unaware_survival(
@@ -169,10 +174,10 @@ def unaware_survival(
         rate_per_us: R_u.
     """
     into = starts[scene.station] * unread.exposed * answered[:, None]  # (l, w)
-    survives = (1.0 - into * unread.kill).prod(axis=1)
+    survives = row_products(1.0 - into * unread.kill)
     per_us = scene.station_means(attempts, into) * rate_per_us[:, None]
     part = (per_us / rate_per_us).T[scene.station]  # of attempts of l, into exchanges of u
-    own_lost = np.minimum(1.0, (part * unread.own_kill).sum(axis=1))
+    own_lost = np.minimum(1.0, row_sums(part * unread.own_kill))
     return np.asarray(survives * (1.0 - own_lost))
 
 

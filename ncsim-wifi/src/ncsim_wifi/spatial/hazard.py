@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.spatial.elementary import exp
 
 LEFT_SLOPE_PER_dB = -2.3
 RIGHT_SLOPE_PER_dB = -2.8
@@ -75,4 +76,4 @@ def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
     place = scheme * grid.shape[1] + below
     ln_hazard = grid.take(place)
     ln_hazard += (at - below) * (grid.take(place + 1) - ln_hazard)
-    return np.asarray(np.exp(ln_hazard))
+    return exp(ln_hazard)

@@ -9,20 +9,22 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import ACK_us, RTS_us, SIFS_us
 from ncsim_wifi.quantities import FloatArray, IntArray
-from ncsim_wifi.spatial.attempts import Exchange
+from ncsim_wifi.spatial.attempts import GAUSS_AT, Exchange
 from ncsim_wifi.spatial.backoff import STAGES
+from ncsim_wifi.spatial.elementary import exp, log
 from ncsim_wifi.spatial.forms import Forms
 from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, windows_of
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
     LARGEST_ON,
+    LEAST_KILL,
     LEAST_ON,
 )
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.statics import Statics
-from ncsim_wifi.spatial.sums import row_sums
+from ncsim_wifi.spatial.sums import products_by, row_sums
 
 
 class Traffic(NamedTuple):
@@ -83,17 +85,20 @@ class HiddenLoss(NamedTuple):
     grows: FloatArray
 
 
-def effective_hazard(
-    statics: Statics, traffic: Traffic, eager: FloatArray | None, forms: Forms
+def effective_half_kill(
+    statics: Statics, traffic: Traffic, eager: FloatArray, forms: Forms
 ) -> tuple[FloatArray, FloatArray]:
-    """Return h_r of each relation, and how loss grows with the sender's stage (MODEL 3.7).
+    """Return the part of half overlapped frames that each relation destroys (MODEL 3.7).
 
     Args:
         statics: Relations.
         traffic: What stations do.
         eager: How much more often than on average the interferer of each relation attempts while
-            the sender is in a stage, shape (relations, 7), if known.
+            the sender is in a stage, shape (relations, 7).
         forms: The functions to use.
+
+    Returns:
+        That part, and how loss grows with the sender's stage.
     """
     hostile, times = statics.hostile, traffic.times
     half, grows = statics.alone_half_kill.copy(), np.ones((len(hostile), STAGES))
@@ -106,20 +111,17 @@ def effective_hazard(
             times.busy_us,
             _of_helpers(statics.helper_relation, eager),
         )
-        shares = traffic.link_stages[hostile.link[some]] if eager is not None else 1.0
-        half[some] = row_sums(shares * by_stage)
+        half[some] = row_sums(traffic.link_stages[hostile.link[some]] * by_stage)
         grows[some] = _whole(by_stage) / np.maximum(_whole(half[some]), 1e-9)[:, None]
         half = np.where(hostile.is_strong, np.maximum(half, statics.alone_half_kill), half)
         grows[hostile.is_strong] = 1.0
     if hostile.has_partners:
         half = half + _partners_kill(hostile, traffic)
-    return np.maximum(-2.0 * np.log1p(-np.minimum(half, LARGEST_KILL)), 1e-9), grows
+    return np.minimum(np.maximum(half, LEAST_KILL), LARGEST_KILL), grows
 
 
-def _of_helpers(relation: IntArray, eager: FloatArray | None) -> FloatArray:
+def _of_helpers(relation: IntArray, eager: FloatArray) -> FloatArray:
     """Return how eager helpers are by stage of the sender; as always where that is not known."""
-    if eager is None:
-        return np.ones((*relation.shape, 1))
     return np.where((relation >= 0)[:, :, None], eager[relation], 1.0)
 
 
@@ -141,24 +143,21 @@ def by_own_stage(survives: FloatArray, grows: FloatArray) -> FloatArray:
 def _partners_kill(hostile: Hostile, traffic: Traffic) -> FloatArray:
     """Return what is lost as another begins in the same slot as the interferer now and then."""
     together = traffic.same_slot[hostile.station[:, None], hostile.partner] * hostile.partner_kill
-    return np.asarray(np.add.reduce(together, axis=1))
+    return row_sums(together)
 
 
 def conditioned_on(
-    rivals: tuple[IntArray, IntArray], on: FloatArray, kill: FloatArray
+    rivals: tuple[IntArray, IntArray], on: FloatArray, spared: FloatArray
 ) -> FloatArray:
     """Return A' (or A''), with other (or earlier) hostile groups of the link off (MODEL 3.8).
 
     Args:
         rivals: Which relations are conditioned on which being off.
         on: A of each relation.
-        kill: kd of each.
+        spared: (1 - A)^kd of each.
     """
     one, two = rivals
-    if not len(one):
-        return on
-    logs = kill * np.log1p(-np.minimum(on, LARGEST_ON))
-    return on / np.exp(np.bincount(one, logs[two], minlength=len(on)))
+    return on / products_by(one, spared[two], len(on)) if len(one) else on
 
 
 def hidden_loss(
@@ -166,29 +165,34 @@ def hidden_loss(
     statics: Statics,
     traffic: Traffic,
     gates: tuple[FloatArray, FloatArray],
-    eager: FloatArray | None,
+    eager: FloatArray,
     forms: Forms,
 ) -> HiddenLoss:
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
     own, other = statics.own, hostile.station
-    hazard, grows = effective_hazard(statics, traffic, eager, forms)
-    immune = np.exp(-hazard)
+    half, grows = effective_half_kill(statics, traffic, eager, forms)
+    immune = (1.0 - half) * (1.0 - half)
     kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
-    later = conditioned_on(statics.rivals.every, on, kill)
+    off = 1.0 - np.minimum(on, LARGEST_ON)
+    logs = log(np.concatenate([[1.0 - half, off], 1.0 - GAUSS_AT[:, None] * (1.0 - immune)]))
+    spared = exp(kill * logs[1])
+    later = conditioned_on(statics.rivals.every, on, spared)
     state = _group_state(statics, traffic, later)
     met = _interferers(scene, statics, traffic, kill, state)
-    windows = _windows(scene, statics, hazard, immune, gates)
+    lethal = logs[2:] / (2.0 * logs[0])
+    windows = _windows(scene, statics, lethal, immune, gates)
     survives, missed, answered = _fates(scene, statics, forms.survival(met, windows))
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
-    alone = time / np.add.reduce(time, axis=1, keepdims=True)
+    alone = time / row_sums(time)[:, None]
     if hostile.has_several:
-        in_group = hostile.group_sums(phi * (alone * survives).sum(axis=1))[:, None]
+        in_group = hostile.group_sums(phi * row_sums(alone * survives))[:, None]
         several = hostile.is_member_of_several[:, None]
         survives = np.where(several, share * survives + (1.0 - share) * in_group, survives)
-    correction = _correction(scene, statics, on, kill, later)
+    earlier = conditioned_on(statics.rivals.earlier, on, spared)
+    correction = _correction(scene, statics, kill, earlier, later)
     return HiddenLoss(
         np.minimum(np.maximum(survives, 0.0), 1.0),
         np.minimum(np.maximum(np.maximum(answered, survives), 1e-9), 1.0),
@@ -217,14 +221,14 @@ def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "Grou
 def _windows(
     scene: Scene,
     statics: Statics,
-    hazard: FloatArray,
+    lethal: FloatArray,
     immune: FloatArray,
     gates: tuple[FloatArray, FloatArray],
 ) -> Windows:
     """Return the windows in which interferers must not begin (MODEL 3.8)."""
     hostile = statics.hostile
     protected_us = scene.protected_us[hostile.link]
-    left_us, borne_us = windows_of(statics.window_us, protected_us, hazard, immune)
+    left_us, borne_us = windows_of(statics.window_us, protected_us, lethal)
     if scene.settings.rts_cts:
         left_us = np.concatenate([left_us, statics.noticed_us[None]])
     return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, statics.longest_us)
@@ -246,17 +250,17 @@ def _fates(
 
 
 def _correction(
-    scene: Scene, statics: Statics, on: FloatArray, kill: FloatArray, later: FloatArray
+    scene: Scene, statics: Statics, kill: FloatArray, earlier: FloatArray, later: FloatArray
 ) -> FloatArray:
     """Return prod_g max(1, (1 - sum A'' kd) / (1 - sum A' kd)) of each link (MODEL 3.9)."""
-    hostile = statics.hostile
-    earlier = conditioned_on(statics.rivals.earlier, on, kill)
-    sums = [
-        np.minimum(LARGEST_ON, np.add.reduceat(each * kill, hostile.group_starts))
+    hostile, links = statics.hostile, len(scene.links)
+    if not len(statics.rivals.every[0]):
+        return np.ones(links)
+    free = [
+        1.0 - np.minimum(LARGEST_ON, np.bincount(hostile.group, each * kill))
         for each in (earlier, later)
     ]
-    logs = np.log(np.maximum(1.0, (1.0 - sums[0]) / (1.0 - sums[1])))
-    return np.exp(np.bincount(hostile.link_of_group, logs, minlength=len(scene.links)))
+    return products_by(hostile.link_of_group, np.maximum(1.0, free[0] / free[1]), links)
 
 
 class GroupState(NamedTuple):
@@ -289,8 +293,9 @@ def _nobody_else_starts(hostile: Hostile, traffic: Traffic) -> FloatArray:
     """Return y_o, how likely no other member of the group starts in a slot."""
     if not hostile.has_several:
         return np.ones(len(hostile))
-    log = np.log1p(-traffic.tau)[hostile.station]
-    return np.where(hostile.is_member_of_several, np.exp(hostile.group_sums(log) - log), 1.0)
+    waits = 1.0 - traffic.tau[hostile.station]
+    all_wait = products_by(hostile.group, waits, len(hostile.group_starts))[hostile.group]
+    return np.where(hostile.is_member_of_several, all_wait / waits, 1.0)
 
 
 def _seen_us(
@@ -320,8 +325,8 @@ def _seen_us(
 def _neighbour_busy_us(statics: Statics, traffic: Traffic) -> FloatArray:
     """Return T_nb, the mean time on the air of what each station senses."""
     own_us = traffic.times.busy_us
-    busy_us = statics.senses @ (traffic.rate_per_us * own_us)
-    total = statics.senses @ traffic.rate_per_us
+    busy_us = row_sums(statics.senses * (traffic.rate_per_us * own_us))
+    total = row_sums(statics.senses * traffic.rate_per_us)
     return np.where(total > 0.0, busy_us / np.maximum(total, 1e-300), own_us)
 
 

@@ -12,8 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
+from ncsim_wifi.spatial.elementary import PER_e_dB, exp, log
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import products_by, row_sums
 
 FAR_ACTIVITY = 0.62
 FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
@@ -117,8 +119,8 @@ def _harm(scene: Scene, power_mW: FloatArray) -> FloatArray:
     return np.where(counts, loss, 0.0)
 
 
-def far_noise_hazard(scene: Scene, far_mW: FloatArray, sending: FloatArray) -> FloatArray:
-    """Return the hazard of the far interferers' noise beyond that of the noise floor.
+def far_noise_survival(scene: Scene, far_mW: FloatArray, sending: FloatArray) -> FloatArray:
+    """Return what the noise of far interferers leaves of the frames of each link.
 
     What the noise floor alone costs is in the clean rate, which the link model decides.
 
@@ -129,11 +131,10 @@ def far_noise_hazard(scene: Scene, far_mW: FloatArray, sending: FloatArray) -> F
     """
     plant = scene.plant
     if not far_mW.any():
-        return np.zeros(len(scene.links))
-    noise_mW = plant.noise_mW + (far_mW * sending[scene.station]).sum(axis=1)
-    every = np.arange(len(scene.links))
-    whole = hazard(scene.scheme, scene.ratio_dB(noise_mW, every))
-    return np.maximum(0.0, whole - plant.noise_hazard[scene.links])
+        return np.ones(len(scene.links))
+    noise_mW = plant.noise_mW + row_sums(far_mW * sending[scene.station])
+    whole = hazard(scene.scheme, scene.signal_dBm - PER_e_dB * log(noise_mW))
+    return exp(-np.maximum(0.0, whole - plant.noise_hazard[scene.links]))
 
 
 def others_survival(
@@ -153,8 +154,7 @@ def others_survival(
     free = 1.0 - np.minimum(np.bincount(others.group, on), LARGEST_ON)
     part = scene.protected_us[others.link] / on_air_us[others.station]
     begun = np.bincount(others.group, on * part) / free
-    logs = np.log(free) - begun
-    return np.exp(np.bincount(others.link_of_group, logs, minlength=len(scene.links)))
+    return products_by(others.link_of_group, free * exp(-begun), len(scene.links))
 
 
 def grouped(

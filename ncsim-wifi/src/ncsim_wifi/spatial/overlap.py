@@ -9,7 +9,7 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
 
-LARGEST_KILL = 1.0 - 1e-9
+LARGEST_KILL, LEAST_KILL = 1.0 - 1e-9, 5e-10
 LARGEST_ON = 0.97
 LEAST_ON = 1e-9
 

@@ -78,6 +78,11 @@ class Hostile:
         return np.bincount(self.group)[self.group] > 1
 
     @cached_property
+    def of_several(self) -> IntArray:
+        """Return the relations that share their group."""
+        return np.flatnonzero(self.is_member_of_several)
+
+    @cached_property
     def has_several(self) -> bool:
         """Return whether any group has several members."""
         return len(self.group_starts) < len(self)
@@ -96,7 +101,7 @@ class Hostile:
         """Return for each relation the sum of its group."""
         if not self.has_several:
             return values
-        return np.asarray(np.add.reduceat(values, self.group_starts)[self.group])
+        return np.asarray(np.bincount(self.group, values)[self.group])
 
 
 def hostile_relations(scene: Scene, near: Near) -> Hostile:

@@ -10,6 +10,7 @@ from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, dBm_from_mW
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.plant import Plant
 from ncsim_wifi.spatial.settings import Settings
+from ncsim_wifi.spatial.sums import sums_by
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Scene:
         """
         if self.station_count == len(self.links):  # the shares are 1, the order is the same
             return values
-        return np.asarray((self.link_of_station * attempts) @ values)
+        return sums_by(self.station, attempts[:, None] * values, self.station_count)
 
     @cached_property
     def scheme(self) -> IntArray:

@@ -11,6 +11,7 @@ from ncsim_wifi.mac.timing import AIFS_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.handshake import NAV_TIMEOUT_us
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_sums
 
 EIFS_AFTER_LOSS_us = 60.2  # EIFS - AIFS beyond AIFS: SIFS + ACK at the slowest rate (MODEL 3.4)
 EIFS_WEIGHT = 0.5
@@ -86,7 +87,7 @@ def silence_of(
         return Silence(overhead_us, np.zeros_like(clear))
     per_station_us = scene.station_means(attempts, per_link_us)
     degree = scene.degree
-    sums_us = np.add.reduce(per_station_us * scene.senses, axis=1)
+    sums_us = row_sums(per_station_us * scene.senses)
     mean_us = np.where(degree > 0.0, sums_us / np.maximum(degree, 1.0), overhead_us)
     deviation_us = EIFS_WEIGHT * (per_station_us - mean_us[:, None]) * scene.senses
     return Silence(mean_us, deviation_us)

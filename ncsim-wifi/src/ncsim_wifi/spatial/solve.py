@@ -22,6 +22,7 @@ from ncsim_wifi.spatial.backoff import (
     visits_per_packet,
 )
 from ncsim_wifi.spatial.collisions import base_success
+from ncsim_wifi.spatial.elementary import exp, log
 from ncsim_wifi.spatial.forms import ARRAYS, Forms, forms_for
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
 from ncsim_wifi.spatial.joint import JointStages, RelationRates
@@ -31,14 +32,14 @@ from ncsim_wifi.spatial.losses import (
     by_own_stage,
     hidden_loss,
 )
-from ncsim_wifi.spatial.near import far_noise_hazard, others_survival
+from ncsim_wifi.spatial.near import far_noise_survival, others_survival
 from ncsim_wifi.spatial.occupancy import Occupancy
 from ncsim_wifi.spatial.overlap import LARGEST_ON, LEAST_ON
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.silence import Silence, silence_of
 from ncsim_wifi.spatial.statics import Statics, statics_of
-from ncsim_wifi.spatial.sums import row_sums
+from ncsim_wifi.spatial.sums import products_by, row_products, row_sums, sums_by
 
 STEPS_WITH_CHAINS = 4  # then every second one (MODEL 3.10)
 LEAST_ACTIVITY = 1e-12
@@ -87,7 +88,7 @@ class FixedPoint:
         self._packets = np.ones(links)
         self._clear = np.ones((stations, stations))
         self._blocked = np.zeros(stations)
-        self._eager: FloatArray | None = None
+        self._eager = np.ones((len(self._statics.hostile), STAGES))
         overhead_us = scene.station_sums(self._attempts * scene.overhead_us)
         self._silence = Silence(overhead_us, np.zeros((stations, stations)))
 
@@ -194,8 +195,8 @@ class FixedPoint:
         """Bring losses, chains and stages up to date (MODEL 3.5 to 3.11)."""
         statics = self._statics
         scene, sending = self._scene, traffic.sending
-        noise_hazard = far_noise_hazard(scene, statics.far_mW, sending)
-        base = base_success(scene, noise_hazard, attempts.same_slot, statics.same_slot_loss)
+        spared = far_noise_survival(scene, statics.far_mW, sending)
+        base = base_success(scene, spared, attempts.same_slot, statics.same_slot_loss)
         if len(statics.others.link):
             base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
         if statics.unread is not None or statics.fields is not None:
@@ -259,26 +260,26 @@ class FixedPoint:
             return
         gain = scene.settings.approximations.gain
         by_stage, _ = self._success(self._heard, hidden, hidden.answered, np.ones_like(hidden.hit))
-        fresh = (self._link_stages * by_stage).sum(axis=1)
+        fresh = row_sums(self._link_stages * by_stage)
         self._answered = gain * fresh + (1.0 - gain) * self._answered
         after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
         silenced_us = statics.silenced * after_cts_us[:, None]
         heard_us = scene.station_means(self._attempts, silenced_us)  # (w, u)
         on = np.clip(traffic.on * (heard_us / traffic.times.busy_us[:, None]).T, 0.0, LARGEST_ON)
-        silenced = 1.0 - (1.0 - on).prod(axis=1)
+        silenced = 1.0 - row_products(1.0 - on)
         self._silenced += gain * (silenced - self._silenced)
 
     def _visit(self, success: FloatArray) -> None:
         """Update stages, attempt shares and losses (MODEL 3.11)."""
         gain = self._scene.settings.approximations.stage_gain
         visits = visits_per_packet(np.minimum(np.maximum(success, 0.0), 1.0))
-        fresh = visits / visits.sum(axis=1, keepdims=True)
+        fresh = visits / row_sums(visits)[:, None]
         self._link_stages = gain * fresh + (1.0 - gain) * self._link_stages
         per_packet = self._packets / self._link_stages[:, 0]
         own = self._scene.station_sums(per_packet)
         self._attempts = per_packet / own[self._scene.station]
         self._stages = self._scene.station_means(self._attempts, self._link_stages)
-        self._loss = 1.0 - (self._link_stages * success).sum(axis=1)
+        self._loss = 1.0 - row_sums(self._link_stages * success)
 
     def _success(
         self, base: FloatArray, hidden: HiddenLoss, survives: FloatArray, grows: FloatArray
@@ -286,9 +287,12 @@ class FixedPoint:
         """Return tot_l(a), and sbar_r(a) of each relation (MODEL 3.9)."""
         hostile = self._statics.hostile
         parts = by_own_stage(self._joint.expected(hidden.alone, survives), grows)
-        logs = hidden.phi[:, None] * np.log(np.maximum(parts, 1e-12))
+        factors = np.maximum(parts, 1e-12)
+        some = hostile.of_several
+        if len(some):
+            factors[some] = exp(hidden.phi[some, None] * log(factors[some]))
         whole = np.ones((len(base), STAGES))
-        whole[hostile.links] = np.exp(np.add.reduceat(logs, hostile.link_starts))
+        whole[hostile.links] = np.multiply.reduceat(factors, hostile.link_starts)
         whole = np.minimum(1.0, whole * hidden.correction[:, None])
         return base[:, None] * whole, parts
 
@@ -315,8 +319,8 @@ class FixedPoint:
         own = self._scene.station[hostile.link]
         meets = traffic.tau[hostile.station] * self._clear[own, hostile.station]
         lost = meets * (1.0 - during) * self._statics.same_slot_loss[hostile.link, hostile.station]
-        logs = np.log1p(-np.minimum(lost, LARGEST_ON))
-        return np.exp(np.bincount(hostile.link, logs, minlength=len(self._scene.links)))
+        spared = 1.0 - np.minimum(lost, LARGEST_ON)
+        return products_by(hostile.link, spared, len(self._scene.links))
 
     def _ack_survival(self, traffic: Traffic, hidden: HiddenLoss | None) -> FloatArray:
         """Return what acknowledgements of hidden links leave of frames (MODEL 3.9)."""
@@ -330,8 +334,8 @@ class FixedPoint:
             spared[hostile.link, hostile.station] = 1.0 - kill
         sending = traffic.sending
         if scene.settings.rts_cts:  # a CTS stops the sender too
-            own = scene.link_of_station * (self._attempts * self._answered)
-            sending = sending * (1.0 - own @ self._statics.silenced).T
+            part = (self._attempts * self._answered)[:, None] * self._statics.silenced
+            sending = sending * (1.0 - sums_by(scene.station, part, scene.station_count)).T
         heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
         self._heard = heard
         if not len(acks.link):
@@ -341,5 +345,5 @@ class FixedPoint:
             sent = sent * 2.0  # each data frame is answered by a CTS before and an ACK after
         window_us = scene.protected_us[acks.link] + scene.ack_us[acks.other]
         kill = acks.kill * spared[acks.link, scene.station[acks.other]]
-        logs = np.log(np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill)))
-        return heard * np.exp(np.bincount(acks.link, logs, minlength=len(scene.links)))
+        survives = np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill))
+        return heard * products_by(acks.link, survives, len(scene.links))

@@ -5,7 +5,7 @@ numpy's own sums group their terms as suits the processor.
 
 import numpy as np
 
-from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.quantities import FloatArray, IntArray
 
 MANY_ROWS = 30
 """From here on a copy on its side is worth it: of two axes, numpy adds along the first in order."""
@@ -37,3 +37,30 @@ def row_products(values: FloatArray) -> FloatArray:
     if len(values) < MANY_ROWS:
         return np.asarray(np.multiply.accumulate(values, axis=-1)[..., -1])
     return np.asarray(np.multiply.reduce(values.T.copy(), axis=0))
+
+
+def sums_by(place: IntArray, values: FloatArray, count: int) -> FloatArray:
+    """Return the sums of the rows of each place, in their order, shape (count, columns).
+
+    Args:
+        place: Of each row.
+        values: Shape (rows, columns).
+        count: Number of places.
+    """
+    columns = values.shape[1]
+    cells = (place[:, None] * columns + np.arange(columns)).ravel()
+    sums = np.bincount(cells, values.ravel(), count * columns)
+    return np.asarray(sums, np.float64).reshape(count, columns)
+
+
+def products_by(place: IntArray, factors: FloatArray, count: int) -> FloatArray:
+    """Return the product of the factors of each place, in their order, 1 where there are none.
+
+    Args:
+        place: Of each factor.
+        factors: One for each place.
+        count: Number of places.
+    """
+    products = np.ones(count)
+    np.multiply.at(products, place, factors)
+    return products
