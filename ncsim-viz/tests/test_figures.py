@@ -108,6 +108,28 @@ def test_what_cannot_be_drawn_is_said(run_folder, tmp_path, capsys):
     assert not (tmp_path / "x.svg").exists()
 
 
+def test_the_area_below_a_staircase_is_the_payload_and_no_step_lasts_no_time(
+    scenario_text, tmp_path
+):
+    scenario, out = tmp_path / "x.yaml", tmp_path / "out"
+    scenario.write_text(
+        scenario_text.replace("      edges: [", "      edges: [{from: T2, to: T1, data_size: 1}, ")
+        .replace("tasks: [", "tasks: [{id: T2, compute_cost: 0, pinned_to: a}, ")
+        .replace("T0, compute_cost: 1", "T0, compute_cost: 0")
+    )
+    exit_code_of(lambda: app(args=["run", str(scenario), "-o", str(out)], standalone_mode=False))
+    run = load_run(out)
+    replaced_at_once = 0
+    for transfer in run.transfers:
+        spans = rates.in_force(transfer, run)
+        replaced_at_once += len(transfer.steps) - len(spans)
+
+        assert all(end_us > step.at_us for step, end_us in spans)
+        served_MB = sum(step.rate_MBps * (end_us - step.at_us) / 1e6 for step, end_us in spans)
+        assert served_MB == pytest.approx(transfer.size_MB)
+    assert replaced_at_once
+
+
 @given(st.integers(1, 12), st.data())
 def test_layers_follow_every_edge_and_no_two_tasks_share_a_place(count, data):
     pairs = [(a, b) for b in range(count) for a in range(b)]

@@ -1,5 +1,6 @@
 import { describe, expect, test } from "vitest";
 import { sorted } from "../src/app/rows";
+import { actionOf } from "../src/app/keys";
 import { busiest, Page } from "../src/app/page";
 import { causesOf } from "../src/app/inspector";
 import { moved, stretch } from "../src/app/replay";
@@ -8,7 +9,10 @@ import { activityOf } from "../src/draw/activity";
 import { tickSeconds, ticks } from "../src/draw/format";
 import { START, Store } from "../src/state";
 import { pairsOf } from "../src/views/compare";
+import { gantt } from "../src/views/gantt";
+import { overview } from "../src/views/overview";
 import { marksOf } from "../src/views/marks";
+import { inForce, treads } from "../src/views/rates";
 import { slackOf } from "../src/views/slack";
 import { made, random, read } from "./made";
 
@@ -32,6 +36,53 @@ function small(): Run {
   ];
   return read(`${lines.map((line) => JSON.stringify(line)).join("\n")}\n`);
 }
+
+describe("staircases of rates", () => {
+  test("a rate that was replaced at the instant it was set is not drawn", () => {
+    const run = read(made(80));
+    let dropped = 0;
+    for (let x = 0; x < run.transfers; x++) {
+      const steps = run.stepsOf(x);
+      const kept = inForce(run, x);
+      dropped += steps.length - kept.length;
+      expect(new Set(kept.map((step) => run.stepTime(step))).size).toBe(kept.length);
+      expect(kept.at(-1)).toBe(steps.at(-1));
+    }
+    expect(dropped).toBeGreaterThan(0);
+  });
+
+  test("a short peak takes one pixel, and the rate after it the rest", () => {
+    expect(treads([10, 10.1, 90], [3.3, 0.8])).toEqual([{ x0: 10, x1: 10.5, k: 0 }, { x0: 10.5, x1: 90, k: 1 }]);
+  });
+
+  test("a short dip leaves what follows as it is", () => {
+    expect(treads([10, 10.1, 90], [0.8, 3.3])).toEqual([{ x0: 10, x1: 90, k: 1 }]);
+  });
+
+  test("at places apart, each rate is drawn from its step to the next", () => {
+    expect(treads([0, 20, 30], [1, 2])).toEqual([{ x0: 0, x1: 20, k: 0 }, { x0: 20, x1: 30, k: 1 }]);
+  });
+
+  test("areas cover the time of service once", () => {
+    const next = random(3);
+    for (let round = 0; round < 200; round++) {
+      const edges = Array.from({ length: 12 }, () => next() * 8).sort((a, b) => a - b);
+      const pieces = treads(edges, edges.slice(1).map(() => next()));
+      expect(pieces[0].x0).toBe(edges[0]);
+      expect(pieces.at(-1)!.x1).toBe(edges.at(-1));
+      for (let i = 1; i < pieces.length; i++) expect(pieces[i].x0).toBe(pieces[i - 1].x1);
+    }
+  });
+});
+
+test("a key acts in the view that was asked for, though it is not drawn yet", () => {
+  const page = new Page(new Store({ ...START, theme: "light" }), { run: small(), other: null, extras: {} });
+  const press = (key: string): void => actionOf({ key, shiftKey: false }, page, [overview, gantt])?.();
+
+  press("2");
+  press("j");
+  expect(page.store.ui.selection).toEqual({ kind: "task", id: 0 });
+});
 
 describe("slack", () => {
   test("is zero on the chain that binds, and counts what a node does next", () => {

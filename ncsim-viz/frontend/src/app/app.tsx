@@ -29,7 +29,7 @@ export function App({ page, service }: { page: Page; service: Service | null }) 
   useAddress(page);
   useTheme(ctx);
   useEffect(() => (ui.playing ? playing(page) : undefined), [ui.playing]);
-  useKeys(page, view, views);
+  useKeys(page, views);
   return (
     <>
       <Header ctx={ctx} service={service} />
@@ -105,11 +105,11 @@ function useTheme(ctx: Context): void {
   }, []);
 }
 
-function useKeys(page: Page, view: View, views: View[]): void {
+function useKeys(page: Page, views: View[]): void {
   useEffect(() => {
     const listen = (event: KeyboardEvent): void => {
       if (belongsToField(event) && event.key !== "Escape") return;
-      const action = actionOf(event, page, view, views);
+      const action = actionOf(event, page, views);
       if (!action) return;
       event.preventDefault();
       action();

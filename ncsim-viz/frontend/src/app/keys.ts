@@ -24,9 +24,11 @@ export const KEYS: [string, string][] = [
 
 type Action = () => void;
 
-export function actionOf(event: KeyboardEvent, page: Page, view: View, views: View[]): Action | undefined {
+/** What a key does in the view that was asked for last, drawn or not yet. */
+export function actionOf(event: Pick<KeyboardEvent, "key" | "shiftKey">, page: Page, views: View[]): Action | undefined {
   const { store } = page;
   const { ui } = store;
+  const view = views.find((each) => each.id === ui.view) ?? views[0];
   const step = event.shiftKey ? (by: 1 | -1) => page.stepTime(by) : (by: 1 | -1) => page.goTo(ui.event + by);
   const actions: Record<string, Action> = {
     " ": () => play(page),

@@ -10,7 +10,9 @@ import type { Box, Context, Table, View } from "./view";
 
 const LEFT = 110;
 const TOP = 24;
-const BELOW = 26;
+/** Height of a row of the legend; where the screen is narrow there are two. */
+const LEGEND = 18;
+const below = (width: number): number => 8 + LEGEND * (width < 700 ? 2 : 1);
 const TALLEST_px = 44;
 /** Above so many intervals in the window, pixels are drawn instead of shapes. */
 export const PAINTED = 3000;
@@ -21,8 +23,8 @@ const STEPS_px = { width: 4, height: 7 };
 const lanesOf = (ctx: Context): Lanes => ctx.lanesOf(ctx.ui.lanes);
 
 /** Height of a lane: enough to read, more where there is room, and as little as it takes to fit. */
-function laneHeight(ctx: Context, lanes: Lanes, room: number): number {
-  const share = (room - TOP - BELOW) / Math.max(1, lanes.lanes.length);
+function laneHeight(ctx: Context, lanes: Lanes, width: number, room: number): number {
+  const share = (room - TOP - below(width)) / Math.max(1, lanes.lanes.length);
   const least = ctx.ui.fit ? 1 : lanes.intervals > MANY ? 12 : 20;
   return Math.max(least, Math.min(ctx.ui.fit ? 20 : TALLEST_px, share));
 }
@@ -43,7 +45,7 @@ function rowsOf(lanes: Lanes, box: Box, height: number): Row[] {
 }
 
 /** Drawings and hits share the height that `height` gave: the box has it. */
-const heightIn = (ctx: Context, lanes: Lanes, box: Box): number => laneHeight(ctx, lanes, box.height);
+const heightIn = (ctx: Context, lanes: Lanes, box: Box): number => laneHeight(ctx, lanes, box.width, box.height);
 
 function draw(p: Painter, ctx: Context, box: Box): void {
   const lanes = lanesOf(ctx);
@@ -69,7 +71,7 @@ function draw(p: Painter, ctx: Context, box: Box): void {
 function legend(p: Painter, ctx: Context, box: Box): void {
   const { colours } = ctx;
   const lanes = lanesOf(ctx);
-  const y = TOP + lanes.lanes.length * heightIn(ctx, lanes, box) + BELOW / 2;
+  let y = TOP + lanes.lanes.length * heightIn(ctx, lanes, box) + 4 + LEGEND / 2;
   if (y > box.bottom || !lanes.lanes.length) return;
   const [blue] = colours.categories;
   const marks: [string, (x: number) => void][] = [
@@ -81,8 +83,10 @@ function legend(p: Painter, ctx: Context, box: Box): void {
     }],
   ];
   if (ctx.ui.chain) marks.push(["binding chain", (x) => p.rect(x, y - 6, 22, 12, { stroke: colours.bind, width: 2, dash: [5, 2] })]);
-  let x = LEFT;
+  const left = box.width < 700 ? 8 : LEFT;
+  let x = left;
   for (const [words, mark] of marks) {
+    if (x > left && x + 28 + widthOf(words, 11) > box.width) [x, y] = [left, y + LEGEND];
     mark(x);
     p.text(x + 28, y, words, { fill: colours.muted, size: 11, halo: colours.paper });
     x += 48 + widthOf(words, 11);
@@ -217,7 +221,7 @@ export const gantt: View = {
   title: "Gantt",
   key: "2",
   summary: (ctx) => `Gantt chart: ${count(ctx.run.tasks, "task")} and ${count(ctx.run.transfers, "dependency", "dependencies")} on ${count(ctx.run.nodes.length, "node")}; a transfer's bar is as high as its share of the rate it would have alone`,
-  height: (ctx, _width, room) => TOP + lanesOf(ctx).lanes.length * laneHeight(ctx, lanesOf(ctx), room) + BELOW,
+  height: (ctx, width, room) => TOP + lanesOf(ctx).lanes.length * laneHeight(ctx, lanesOf(ctx), width, room) + below(width),
   draw,
   overlay: (p, ctx, box) => {
     if (ctx.ui.event >= 0) playhead(p, scaleOf(ctx, box), ctx.ui.time, box.top, box.bottom, ctx.colours);

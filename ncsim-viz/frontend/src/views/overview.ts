@@ -59,15 +59,19 @@ function swatch(p: Painter, ctx: Context, x: number, y: number, width: number, h
   if (i % 2) hatch(p, x, y, width, height, ctx.colours.paper, 6);
 }
 
+/** Width of an entry of the legend, which its longest text fits into. */
+const LEGEND = 250;
+const partsPerRow = (width: number): number => Math.max(1, Math.min(3, Math.floor((width - 32) / LEGEND)));
+
 /** Where the makespan went along the binding chain; Python's numbers. */
 function paintChain(p: Painter, ctx: Context, width: number, y: number): number {
   const { colours, extras } = ctx;
   const explanation = extras.explanation?.[0];
   if (!explanation) return y;
-  p.text(16, y, "Where the makespan went, along the binding chain", { fill: colours.ink, size: 14, bold: true });
+  p.text(16, y, fitted("Where the makespan went, along the binding chain", 0.9 * width - 32, 14), { fill: colours.ink, size: 14, bold: true });
   const whole = width - 32;
   const parts = Object.entries(explanation.totals_us).filter(([, spent]) => spent > 0);
-  const many = width < 800 ? 2 : 3;
+  const many = partsPerRow(width);
   let x = 16;
   parts.forEach(([part, spent], i) => {
     const share = spent / explanation.makespan_us;
@@ -138,7 +142,7 @@ function itemsTop(ctx: Context, width: number): number {
   const cards = 14 + Math.ceil(8 / perRow(width)) * CARD.height + 22 + (ctx.run.done?.detail ? 28 : 0);
   const explanation = ctx.extras.explanation?.[0];
   const parts = Object.values(explanation?.totals_us ?? {}).filter((spent) => spent > 0).length;
-  return cards + (explanation ? 54 + Math.ceil(parts / (width < 800 ? 2 : 3)) * 20 + 30 : 0) + busiestHeight(ctx);
+  return cards + (explanation ? 54 + Math.ceil(parts / partsPerRow(width)) * 20 + 30 : 0) + busiestHeight(ctx);
 }
 
 export const overview: View = {

@@ -1,5 +1,6 @@
 /** Staircases: the rate of each transfer over time, each step with its cause. */
 
+import type { Run } from "../data/run";
 import { playhead, timeAxis, timeOf, xOf, type Scale } from "../draw/axis";
 import { count, number, seconds } from "../draw/format";
 import { fitted, type Painter } from "../draw/painter";
@@ -11,6 +12,7 @@ const LEFT = 160;
 const TOP = 24;
 /** Marks of causes and numbers keep this distance. */
 const APART_px = 8;
+const PIXEL = 0.5;
 
 const scaleOf = (ctx: Context, box: Box): Scale => ({ from: ctx.window[0], to: ctx.window[1], left: LEFT, right: box.width - 12 });
 
@@ -47,7 +49,7 @@ function paintRow(p: Painter, ctx: Context, s: Scale, x: number, top: number): v
   const { run, colours, marks } = ctx;
   const floor = top + ROW - 12;
   const solo = run.soloRate(x);
-  const steps = run.stepsOf(x);
+  const steps = inForce(run, x);
   const most = steps.reduce((high, step) => Math.max(high, run.stRate.data[step]), 1e-12);
   const height = ROW - 26;
   const isMarked = marks.transfers.has(x);
@@ -63,9 +65,31 @@ function paintRow(p: Painter, ctx: Context, s: Scale, x: number, top: number): v
   p.line([LEFT, floor, s.right, floor], { stroke: colours.grid });
 }
 
+/** The steps that were in force for some time, and the last; what the next one replaced at the same instant served no byte. */
+export const inForce = (run: Run, x: number): number[] =>
+  run.stepsOf(x).filter((step, k, all) => k + 1 === all.length || run.stepTime(all[k + 1]) > run.stepTime(step));
+
+/** A piece of a staircase between two places on the screen, and which of the rates it shows. */
+export interface Tread { x0: number; x1: number; k: number }
+
+/** Pieces to draw: steps that begin in one pixel share it, at their greatest rate; the last of them goes on from there. */
+export function treads(edges: number[], rates: number[]): Tread[] {
+  const found: Tread[] = [];
+  for (let k = 0; k < rates.length; k++) {
+    const x0 = edges[k];
+    let greatest = k;
+    while (k + 1 < rates.length && edges[k + 1] - x0 < PIXEL) if (rates[++k] > rates[greatest]) greatest = k;
+    const x1 = Math.max(x0, edges[k + 1]);
+    const goesOn = greatest === k ? x0 : Math.min(x0 + PIXEL, x1);
+    if (greatest !== k) found.push({ x0, x1: goesOn, k: greatest });
+    found.push({ x0: goesOn, x1, k });
+  }
+  return found;
+}
+
 interface Stairs { x: number; steps: number[]; top: number; floor: number; y: (rate: number) => number; end: number }
 
-/** Areas first, numbers and causes above them; what falls into one pixel is drawn once, at its greatest. */
+/** Areas first, numbers and causes above them. */
 function stairs(p: Painter, ctx: Context, s: Scale, { x, steps, top, floor, y, end }: Stairs): void {
   const { run, colours } = ctx;
   const fill = colours.categories[run.exDag.data[x] % 8];
@@ -73,13 +97,10 @@ function stairs(p: Painter, ctx: Context, s: Scale, { x, steps, top, floor, y, e
   edges.push(end);
   let lastMark = -Infinity;
   let lastText = -Infinity;
-  for (let k = 0; k < steps.length; k++) {
-    const [x0] = [edges[k]];
-    let rate = run.stRate.data[steps[k]];
-    while (k + 1 < steps.length && edges[k + 1] - x0 < 0.5) rate = Math.max(rate, run.stRate.data[steps[++k]]);
-    const x1 = edges[k + 1];
+  for (const { x0, x1, k } of treads(edges, steps.map((step) => run.stRate.data[step]))) {
+    const rate = run.stRate.data[steps[k]];
     if (x1 < s.left - 20 || x0 > s.right + 20) continue;
-    p.rect(x0, y(rate), Math.max(0.5, x1 - x0), floor - y(rate), { fill, alpha: 0.75 });
+    p.rect(x0, y(rate), Math.max(PIXEL, x1 - x0), floor - y(rate), { fill, alpha: 0.75 });
     p.line([x0, y(rate), x1, y(rate)], { stroke: colours.ink });
     if (rate === 0) p.text((x0 + x1) / 2, floor - 8, "paused", { fill: colours.bad, size: 10, anchor: "middle", halo: colours.paper });
     const label = number(rate, 2);

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from ncsim_core.errors import ScenarioError
 from ncsim_core.sweep.drawing import COLOURS, figure_at
-from ncsim_core.trace.run_trace import RunTrace, RunTransfer
+from ncsim_core.trace.run_trace import RateStep, RunTrace, RunTransfer
 from ncsim_core.units import s_from_us
 
 from ncsim_viz.figures.words import plain
@@ -49,8 +49,14 @@ def _longest(transfers: Sequence[RunTransfer], run: RunTrace) -> list[RunTransfe
     return sorted(kept, key=lambda each: (each.started_us or 0, each.number))
 
 
-def _draw_row(axes: Any, transfer: RunTransfer, run: RunTrace) -> None:  # noqa: ANN401
+def in_force(transfer: RunTransfer, run: RunTrace) -> list[tuple[RateStep, int]]:
+    """Return the steps with their ends, without those replaced at the instant they were set."""
     spans = list(run.rate_spans(transfer))
+    return [(step, end_us) for step, end_us in spans if end_us > step.at_us] or spans[-1:]
+
+
+def _draw_row(axes: Any, transfer: RunTransfer, run: RunTrace) -> None:  # noqa: ANN401
+    spans = in_force(transfer, run)
     edges_s = [s_from_us(step.at_us) for step, _ in spans] + [s_from_us(spans[-1][1])]
     rates_MBps = [step.rate_MBps for step, _ in spans]
     axes.stairs(rates_MBps, edges_s, fill=True, color=COLOURS[4], alpha=0.5, label="rate")
