@@ -78,9 +78,9 @@ def main() -> None:
             print(f"20 tasks on a 4x4 grid, {scheduler}, {routing}: {took}")
 
 
-def solved(plant: Plant, count: int, form: forms.Forms) -> FloatArray:
+def solved(plant: Plant, count: int, form: type[FixedPoint]) -> FloatArray:
     """Return the goodputs of all links, worked out from nothing."""
-    return FixedPoint(scene_of(plant, range(count)), form).goodputs_MBps()
+    return form(scene_of(plant, range(count))).goodputs_MBps()
 
 
 def told(solve: Callable[[], object]) -> str:

@@ -32,6 +32,17 @@ def inlined(function: F) -> F:
     return cast("F", NUMBA.njit(**options)(function))
 
 
+def spliced(function: F) -> F:
+    """Return a function to be compiled as if it were written where it is called.
+
+    For a few large functions in a row, each called once: numba would optimize what the innermost
+    one calls once for each of them.
+    """
+    if NUMBA is None:
+        return function
+    return cast("F", NUMBA.njit(error_model="numpy", inline="always")(function))
+
+
 def kept_on_disk(function: F) -> F:
     """Return a function compiled, and kept where that is possible; as it is without numba."""
     if NUMBA is None:

@@ -8,9 +8,9 @@ from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import read_table
 from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.saturated import saturated_goodputs_MBps
 from ncsim_wifi.spatial.scene import scene_of
 from ncsim_wifi.spatial.settings import Settings, Terms
-from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
 from ncsim_wifi.spatial.statics import statics_of
 
 SCHEME = 5

@@ -16,8 +16,8 @@ from ncsim_wifi.radio import Radio
 from ncsim_wifi.spatial.hazard import hazard_table
 from ncsim_wifi.spatial.occupancy import connected_components
 from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.saturated import saturated_goodputs_MBps
 from ncsim_wifi.spatial.settings import Settings, Terms
-from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
 from ncsim_wifi.spatial.transfers import Paths
 
 MAX_SOLVED_SETS = 4096

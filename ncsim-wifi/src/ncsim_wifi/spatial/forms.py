@@ -1,4 +1,4 @@
-"""In which form the costliest functions are used: arrays of numpy, or compiled loops.
+"""In which form steps of the fixed point are made: arrays of numpy, or compiled loops.
 
 Both give the same bits, so the choice is one of speed alone. Compiled loops pay for themselves only
 in long work, since numba takes time to start: they are used once the work of a process comes to
@@ -6,15 +6,13 @@ in long work, since numba takes time to start: they are used once the work of a 
 """
 
 import sys
-from collections.abc import Callable
 from functools import cache
-from typing import Final, NamedTuple
+from typing import Final
 
 from ncsim_core.acceleration import may_compile, numba_starts
 from ncsim_core.memory import is_memory_limited
 
-from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial import attempts, chains, energy, gaps, occupancy, overlap
+from ncsim_wifi.spatial.solve import FixedPoint
 
 SAVED_us: Final = 70
 """What loops save for each link in a step, about."""
@@ -25,40 +23,18 @@ WORTH_LOOPS_us: Final = 2_000_000
 _saved_so_far_us = 0
 
 
-class Forms(NamedTuple):
-    """The functions that there are in two forms; see the modules that define them."""
-
-    attempts_of: Callable[[attempts.Contenders, attempts.Exchange], attempts.Attempts]
-    survival: Callable[[gaps.Interferers, gaps.Windows], gaps.Survival]
-    joint_stages: Callable[[chains.SideRates, chains.SideRates], FloatArray]
-    stage_means: Callable[[chains.Given, FloatArray], FloatArray]
-    silenced_by: Callable[[energy.Silencing, FloatArray], energy.Silenced]
-    exact_occupancy: Callable[[occupancy.SetTable, FloatArray], occupancy.Occupancy]
-    helped_kill: Callable[
-        [overlap.Helped, FloatArray, FloatArray, FloatArray, FloatArray], FloatArray
-    ]
-
-
-ARRAYS: Final = Forms(
-    attempts.attempts_of,
-    gaps.survival,
-    chains.joint_stages,
-    chains.stage_means,
-    energy.silenced_by,
-    occupancy.exact_occupancy,
-    overlap.helped_kill,
-)
+ARRAYS: Final = FixedPoint
 
 
 @cache
-def compiled_loops() -> Forms:
+def compiled_loops() -> type[FixedPoint]:
     """Return the compiled form; plain loops, which are slow, without numba."""
-    from ncsim_wifi.spatial.compiled.entries import LOOPS
+    from ncsim_wifi.spatial.compiled.fixed_point import CompiledFixedPoint
 
-    return LOOPS
+    return CompiledFixedPoint
 
 
-def forms_for(steps: int, links: int) -> Forms:
+def form_for(steps: int, links: int) -> type[FixedPoint]:
     """Return the form that is best for some steps, after those so far.
 
     Args:

@@ -44,7 +44,7 @@ def hazard_table() -> HazardTable:
 
 
 @cache
-def _grid() -> FloatArray:
+def hazard_grid() -> FloatArray:
     """Return ln h on an even grid of ratios, shape (schemes, steps); all points lie on it."""
     steps = round((GRID_TO_dB - GRID_FROM_dB) * GRID_STEPS_PER_dB)
     ratios_dB = GRID_FROM_dB + np.arange(steps + 2) / GRID_STEPS_PER_dB
@@ -72,7 +72,7 @@ def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
     within_dB = np.minimum(np.maximum(ratio_dB, GRID_FROM_dB), GRID_TO_dB)
     at = (within_dB - GRID_FROM_dB) * GRID_STEPS_PER_dB
     below = at.astype(np.int64)
-    grid = _grid()
+    grid = hazard_grid()
     place = scheme * grid.shape[1] + below
     ln_hazard = grid.take(place)
     ln_hazard += (at - below) * (grid.take(place + 1) - ln_hazard)

@@ -9,10 +9,10 @@ import numpy as np
 
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.chains import Given, SideRates
-from ncsim_wifi.spatial.forms import Forms
+from ncsim_wifi.spatial.chains import Given, SideRates, joint_stages, stage_means
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import row_sums
 
 
 class RelationRates(NamedTuple):
@@ -41,11 +41,10 @@ class JointStages:
     Args:
         scene: The active links.
         hostile: Hidden relations.
-        forms: How chains are solved.
     """
 
-    def __init__(self, scene: Scene, hostile: Hostile, forms: Forms) -> None:
-        self._scene, self._forms = scene, forms
+    def __init__(self, scene: Scene, hostile: Hostile) -> None:
+        self._scene = scene
         self._hostile = hostile
         own = scene.station[hostile.link]
         hurts = np.zeros((scene.station_count, scene.station_count), np.bool_)
@@ -56,9 +55,9 @@ class JointStages:
         side_of[one, two] = np.arange(self.count)
         side_of[two, one] = np.arange(self.count) + self.count
         self.side: IntArray = side_of[own, hostile.station]
-        self._station = np.concatenate([one, two])
-        self._relations = np.flatnonzero(self.side >= 0)
-        self._has_one_each = len(self._relations) == 2 * self.count
+        self.station = np.concatenate([one, two])
+        self.relations = np.flatnonzero(self.side >= 0)
+        self._has_one_each = len(self.relations) == 2 * self.count
         self._known = np.zeros(0, np.int64), np.zeros((0, STAGES, STAGES))
 
     def expected(self, alone: FloatArray, by_stage: FloatArray) -> FloatArray:
@@ -68,7 +67,7 @@ class JointStages:
             alone: Time-weighted stages of the interferer of each relation, for want of a chain.
             by_stage: What is averaged, by b, shape (relations, 7).
         """
-        return self._forms.stage_means(Given(alone, *self._known), by_stage)
+        return stage_means(Given(alone, *self._known), by_stage)
 
     def update(
         self,
@@ -91,12 +90,12 @@ class JointStages:
             return
         sides = self._sides(attempts, total, own_part, relation)
         half = self.count
-        cycles_us = cycle_us[self._station]
+        cycles_us = cycle_us[self.station]
         one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
-        joint = self._forms.joint_stages(one, two)
+        joint = joint_stages(one, two)
         both = np.concatenate([joint, joint.transpose(0, 2, 1)])
-        both /= np.maximum(np.add.reduce(both, axis=2, keepdims=True), 1e-300)
-        self._known = self._relations, both[self.side[self._relations]]
+        both /= np.maximum(row_sums(both), 1e-300)[:, :, None]
+        self._known = self.relations, both[self.side[self.relations]]
 
     def _sides(
         self,
@@ -106,7 +105,7 @@ class JointStages:
         relation: RelationRates,
     ) -> RawSides:
         """Return the sides of the chains; links that are not hurt contribute s = 1."""
-        at = self._relations
+        at = self.relations
         side, link = self.side[at], self._hostile.link[at]
         weight = attempts[link][:, None]
         survives_r, hit_r, share_r, grows_r = (each[at] for each in relation)
@@ -119,7 +118,7 @@ class JointStages:
         self._add(share, side, weight * share_r)
         self._add(grows, side, weight * grows_r)
         per_station = self._scene.station_means(attempts, total)
-        other = per_station[self._station]
+        other = per_station[self.station]
         rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
         self._add(other, side, weight * (rest - total[link]))
         other = np.minimum(np.maximum(other, 0.0), 1.0)

@@ -12,14 +12,14 @@ from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.attempts import GAUSS_AT, Exchange
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.elementary import exp, log
-from ncsim_wifi.spatial.forms import Forms
-from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, windows_of
+from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, survival, windows_of
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
     LARGEST_ON,
     LEAST_KILL,
     LEAST_ON,
+    helped_kill,
 )
 from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.scene import Scene
@@ -86,7 +86,7 @@ class HiddenLoss(NamedTuple):
 
 
 def effective_half_kill(
-    statics: Statics, traffic: Traffic, eager: FloatArray, forms: Forms
+    statics: Statics, traffic: Traffic, eager: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the part of half overlapped frames that each relation destroys (MODEL 3.7).
 
@@ -95,7 +95,6 @@ def effective_half_kill(
         traffic: What stations do.
         eager: How much more often than on average the interferer of each relation attempts while
             the sender is in a stage, shape (relations, 7).
-        forms: The functions to use.
 
     Returns:
         That part, and how loss grows with the sender's stage.
@@ -104,7 +103,7 @@ def effective_half_kill(
     half, grows = statics.alone_half_kill.copy(), np.ones((len(hostile), STAGES))
     some = hostile.with_helpers
     if len(some):
-        by_stage = forms.helped_kill(
+        by_stage = helped_kill(
             statics.helped,
             traffic.on,
             times.on_air_us,
@@ -166,12 +165,11 @@ def hidden_loss(
     traffic: Traffic,
     gates: tuple[FloatArray, FloatArray],
     eager: FloatArray,
-    forms: Forms,
 ) -> HiddenLoss:
     """Return what hidden stations do to frames."""
     hostile = statics.hostile
     own, other = statics.own, hostile.station
-    half, grows = effective_half_kill(statics, traffic, eager, forms)
+    half, grows = effective_half_kill(statics, traffic, eager)
     immune = (1.0 - half) * (1.0 - half)
     kill = np.where(hostile.is_strong, 1.0, 1.0 - immune)
     on = np.minimum(np.maximum(traffic.on[own, other], LEAST_ON), 1.0)
@@ -183,7 +181,7 @@ def hidden_loss(
     met = _interferers(scene, statics, traffic, kill, state)
     lethal = logs[2:] / (2.0 * logs[0])
     windows = _windows(scene, statics, lethal, immune, gates)
-    survives, missed, answered = _fates(scene, statics, forms.survival(met, windows))
+    survives, missed, answered = _fates(scene, statics, survival(met, windows))
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / row_sums(time)[:, None]

@@ -3,7 +3,7 @@
 Source: MODEL 3.3; ideal CSMA of Boorstyn (1987), Liew et al. (2010), Laufer and Kleinrock (2016).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -133,7 +133,7 @@ def set_table(senses: BoolArray, components: Sequence[tuple[IntArray, Sequence[i
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class OccupancyModel:
     """Connected components of the sensing graph do not see each other.
 
@@ -146,7 +146,7 @@ class OccupancyModel:
     parts: tuple[tuple[IntArray, Sequence[int] | None], ...]
 
     @cached_property
-    def _tables(self) -> list[tuple[IntArray, SetTable]]:
+    def tables(self) -> list[tuple[IntArray, SetTable]]:
         """Return the tables of components with all their sets, one for all small components."""
         exact = [(stations, sets) for stations, sets in self.parts if sets is not None]
         small = [part for part in exact if len(part[1]) <= FEW_SETS]
@@ -154,7 +154,8 @@ class OccupancyModel:
         return [_table_of(self.senses, parts) for parts in shared]
 
     @cached_property
-    def _beliefs(self) -> list[tuple[IntArray, CliqueBelief]]:
+    def beliefs(self) -> list[tuple[IntArray, CliqueBelief]]:
+        """Return the models of the other components."""
         return [
             (stations, clique_belief(self.senses[np.ix_(stations, stations)]))
             for stations, sets in self.parts
@@ -171,22 +172,13 @@ class OccupancyModel:
             number[stations] = at
         return np.asarray(number[:, None] != number)
 
-    def __call__(
-        self,
-        activity: FloatArray,
-        exact_occupancy: Callable[[SetTable, FloatArray], Occupancy] = exact_occupancy,
-    ) -> Occupancy:
-        """Return the occupancy for rho, the activity of each station.
-
-        Args:
-            activity: rho.
-            exact_occupancy: Sums over independent sets.
-        """
+    def __call__(self, activity: FloatArray) -> Occupancy:
+        """Return the occupancy for rho, the activity of each station."""
         count = len(activity)
         found = Occupancy(np.empty(count), np.empty((count, count)), np.empty((count, count)))
-        for stations, table in self._tables:
+        for stations, table in self.tables:
             self._write(found, stations, exact_occupancy(table, activity[stations]))
-        for stations, model in self._beliefs:
+        for stations, model in self.beliefs:
             self._write(found, stations, model(activity[stations]))
         if self._are_apart is None:
             return found

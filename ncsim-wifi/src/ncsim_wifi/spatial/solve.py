@@ -5,15 +5,13 @@ A fixed number of steps from a cold start makes the result a function of the act
 Source: MODEL 3 and 6.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ncsim_wifi.mac.timing import RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.acks import ack_survival, heard_answers
 from ncsim_wifi.spatial.artefacts import Senders, field_survival
-from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
+from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange, attempts_of
 from ncsim_wifi.spatial.backoff import (
     MEAN_COUNTS,
     STAGES,
@@ -23,7 +21,7 @@ from ncsim_wifi.spatial.backoff import (
 )
 from ncsim_wifi.spatial.collisions import base_success
 from ncsim_wifi.spatial.elementary import exp, log
-from ncsim_wifi.spatial.forms import ARRAYS, Forms, forms_for
+from ncsim_wifi.spatial.energy import silenced_by
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, unaware_starts, unaware_survival
 from ncsim_wifi.spatial.joint import JointStages, RelationRates
 from ncsim_wifi.spatial.losses import (
@@ -35,8 +33,8 @@ from ncsim_wifi.spatial.losses import (
 from ncsim_wifi.spatial.near import far_noise_survival, others_survival
 from ncsim_wifi.spatial.occupancy import Occupancy
 from ncsim_wifi.spatial.overlap import LARGEST_ON, LEAST_ON
-from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
-from ncsim_wifi.spatial.scene import Scene, scene_of
+from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s
+from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.silence import Silence, silence_of
 from ncsim_wifi.spatial.statics import Statics, statics_of
 from ncsim_wifi.spatial.sums import products_by, row_products, row_sums, sums_by
@@ -45,35 +43,18 @@ STEPS_WITH_CHAINS = 4  # then every second one (MODEL 3.10)
 LEAST_ACTIVITY = 1e-12
 
 
-def saturated_goodputs_MBps(plant: Plant, links: Sequence[int]) -> FloatArray:
-    """Return what each of a set of links delivers when all always have something to send.
-
-    Args:
-        plant: All links of the network.
-        links: The active ones, each once; their order has no influence.
-    """
-    if not links:
-        return np.zeros(0)
-    in_order = plant.in_order(links)
-    forms = forms_for(plant.settings.approximations.iterations, len(links))
-    solved = FixedPoint(scene_of(plant, in_order), forms).goodputs_MBps()
-    by_link = dict(zip(in_order, solved.tolist(), strict=True))
-    return np.array([by_link[link] for link in links])
-
-
 class FixedPoint:
     """The iteration on one scene.
 
     Args:
         scene: The active links.
-        forms: Whether to work with arrays or with compiled loops, which makes no difference.
         statics: Those of the scene, where they are known.
     """
 
-    def __init__(self, scene: Scene, forms: Forms = ARRAYS, statics: Statics | None = None) -> None:
-        self._scene, self._forms = scene, forms
+    def __init__(self, scene: Scene, statics: Statics | None = None) -> None:
+        self._scene = scene
         self._statics: Statics = statics or statics_of(scene)
-        self._joint = JointStages(scene, self._statics.hostile, forms)
+        self._joint = JointStages(scene, self._statics.hostile)
         links, stations = len(scene.links), scene.station_count
         self._stages = np.zeros((stations, STAGES))
         self._stages[:, 0] = 1.0
@@ -94,10 +75,7 @@ class FixedPoint:
 
     def goodputs_MBps(self) -> FloatArray:
         """Iterate, and return the goodput of each link of the scene."""
-        settings = self._scene.settings.approximations
-        rate_per_us = np.zeros(self._scene.station_count)
-        for step in range(settings.iterations):
-            rate_per_us = self._step(with_chains=step < STEPS_WITH_CHAINS or step % 2 == 0)
+        rate_per_us = self._advance(0, self._scene.settings.approximations.iterations)
         delivered = rate_per_us[self._scene.station] * self._attempts * (1.0 - self._loss)
         return np.where(self._scene.is_alive, PAYLOAD_MB_us_per_s * delivered, 0.0)
 
@@ -106,8 +84,7 @@ class FixedPoint:
 
         That is what the link would get if its station served no other and always had a frame.
         """
-        with_chains = number < STEPS_WITH_CHAINS or number % 2 == 0
-        rate_per_us = self._step(with_chains=with_chains) / self._activity
+        rate_per_us = self._advance(number, number + 1) / self._activity
         able_per_us = rate_per_us[self._scene.station] * (1.0 - self._loss)
         return np.where(self._scene.is_alive, able_per_us, 0.0)
 
@@ -118,15 +95,22 @@ class FixedPoint:
             activity: alpha, part of the time in which a station has a frame, above 0.
             packets: Packets per time of each link, up to a factor per station.
         """
-        self._activity = activity
-        self._packets = packets
+        self._activity[:] = activity
+        self._packets[:] = packets
+
+    def _advance(self, first: int, stop: int) -> FloatArray:
+        """Go some steps; return R_u of the last."""
+        rate_per_us = np.zeros(self._scene.station_count)
+        for number in range(first, stop):
+            rate_per_us = self._step(with_chains=number < STEPS_WITH_CHAINS or number % 2 == 0)
+        return rate_per_us
 
     def _step(self, *, with_chains: bool) -> FloatArray:
         """Go one step; return R_u."""
         times = self._exchange()
         count = mean_count(self._stages)
         tau = attempt_probability(count)
-        attempts = self._forms.attempts_of(
+        attempts = attempts_of(
             Contenders(
                 self._statics.senses,
                 tau,
@@ -136,9 +120,7 @@ class FixedPoint:
             ),
             times,
         )
-        occupancy = self._statics.occupancy(
-            np.maximum(attempts.activity, LEAST_ACTIVITY), self._forms.exact_occupancy
-        )
+        occupancy = self._statics.occupancy(np.maximum(attempts.activity, LEAST_ACTIVITY))
         gain = self._scene.settings.approximations.gain
         self._clear = gain * np.minimum(occupancy.clear, 1.0) + (1.0 - gain) * self._clear
         traffic = self._traffic(count, attempts, occupancy, times)
@@ -203,7 +185,7 @@ class FixedPoint:
             base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
-            hidden = hidden_loss(scene, statics, traffic, gates, self._eager, self._forms)
+            hidden = hidden_loss(scene, statics, traffic, gates, self._eager)
             base = base * self._partner_collisions(traffic, gates[1])
             base = base * self._ack_survival(traffic, hidden)
             success, parts = self._success(base, hidden, hidden.survives, hidden.grows)
@@ -307,7 +289,7 @@ class FixedPoint:
         stretch = (times.on_air_us + settings.energy_tail_us) / times.busy_us
         on = traffic.on[sets.station[:, None], sets.member] * stretch[sets.member]
         on = np.minimum(np.maximum(on, LEAST_ON), LARGEST_ON)
-        found = self._forms.silenced_by(statics.silencing, on)
+        found = silenced_by(statics.silencing, on)
         fresh = found.blocked
         self._blocked[sets.station] += settings.gain * (fresh - self._blocked[sets.station])
         np.minimum(self._blocked, LARGEST_ON, out=self._blocked)
@@ -329,8 +311,7 @@ class FixedPoint:
         if hidden is not None:
             kill = hidden.kill
             if scene.settings.rts_cts:
-                alone_kill = -np.expm1(-self._statics.alone_hazard)
-                kill = np.where(hostile.by_cts_only, alone_kill, kill)
+                kill = np.where(hostile.by_cts_only, self._statics.alone_kill, kill)
             spared[hostile.link, hostile.station] = 1.0 - kill
         sending = traffic.sending
         if scene.settings.rts_cts:  # a CTS stops the sender too

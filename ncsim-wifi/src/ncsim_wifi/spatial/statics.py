@@ -62,7 +62,7 @@ class Statics:
         rivals: Which relations of a link are conditioned on which others.
         window_us: V_r, the window in which an interferer must not begin.
         longest_us: The longest window that is asked about.
-        alone_hazard: h(w) of each relation.
+        alone_kill: Part of frames lost to the interferer of each relation alone.
         alone_half_kill: The part of half overlapped frames that it destroys.
         noticed_us: Until when a start of the interferer is fatal to an RTS, shape (relations,).
         helped: The relations that may act together with others.
@@ -95,7 +95,7 @@ class Statics:
     rivals: Rivals
     window_us: FloatArray
     longest_us: float
-    alone_hazard: FloatArray
+    alone_kill: FloatArray
     alone_half_kill: FloatArray
     noticed_us: FloatArray
     helped: Helped
@@ -139,7 +139,7 @@ def statics_of(scene: Scene) -> Statics:
         _rivals(scene, hostile),
         window_us,
         max(window_us.max(initial=0.0), CTS_NOTICED_us),
-        alone,
+        -np.expm1(-alone),
         half_kill(alone),
         noticed_us,
         _helped(scene, hostile),

@@ -19,12 +19,11 @@ from ncsim_core.context import ModelCache
 from ncsim_core.network import LinkIndex, Route
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.forms import forms_for
+from ncsim_wifi.spatial.forms import form_for
 from ncsim_wifi.spatial.plant import PAYLOAD_MB_us_per_s, Plant
 from ncsim_wifi.spatial.relay import clique_limits_MBps
 from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.sharing import Sharing
-from ncsim_wifi.spatial.solve import FixedPoint
 from ncsim_wifi.spatial.statics import Statics, statics_of
 
 STEPS = 12  # after which rates of transfers move by a few percent at most
@@ -166,7 +165,8 @@ class _Coupled:
         self._paths, self._routes, self._on_air = paths, routes, on_air
         places = [paths.place[link] for link in on_air]
         self._scene, statics = paths.scene(tuple(places))
-        self._solver = FixedPoint(self._scene, forms_for(STEPS, len(on_air)), statics)
+        solver = form_for(STEPS, len(on_air))
+        self._solver = solver(self._scene, statics)
         stations = self._scene.station.tolist()
         wires = {link: -1 - link for link in used if paths.place[link] < 0}
         self._sharing = Sharing(routes, dict(zip(on_air, stations, strict=True)) | wires)

@@ -13,8 +13,8 @@ from ncsim_wifi.phy.mcs import read_table
 from ncsim_wifi.phy.path_loss import distances_m
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.plant import Plant
+from ncsim_wifi.spatial.saturated import saturated_goodputs_MBps
 from ncsim_wifi.spatial.settings import Settings, Terms
-from ncsim_wifi.spatial.solve import saturated_goodputs_MBps
 from ncsim_wifi.spatial.transfers import Paths
 from ncsim_wifi.validation.rows import Row
 

@@ -8,7 +8,8 @@ from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.chains import BOUNDARY, Given, SideRates
+from ncsim_wifi.spatial.chains import BOUNDARY, SideRates
+from ncsim_wifi.spatial.compiled.tables import Records
 
 LAST = STAGES - 1
 KINDS = 5
@@ -18,9 +19,13 @@ SURVIVES, HIT, SHARE, OTHER, RATE, GROWS = range(SIDE_RATES)
 
 
 @inlined
-def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
-    """Return the time-weighted distribution P(a, b) of each chain, shape (chains, 7, 7)."""
-    count = len(one.hit)
+def joint_stages(both: SideRates, count: int) -> FloatArray:
+    """Return the time-weighted distribution P(a, b) of each chain, shape (chains, 7, 7).
+
+    Args:
+        both: The first sides of all chains, then the second ones.
+        count: Number of chains.
+    """
     joint = np.empty((count, STAGES, STAGES))
     rates = np.empty((STAGES, STAGES, KINDS))
     spread = np.zeros((STAGES, STAGES, BOUNDARY))
@@ -31,8 +36,8 @@ def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
     boundary = np.empty(BOUNDARY)
     sides = np.empty((2, SIDE_RATES, STAGES))
     for chain in range(count):
-        _fill_side(one, chain, sides[0])
-        _fill_side(two, chain, sides[1])
+        _fill_side(both, chain, sides[0])
+        _fill_side(both, count + chain, sides[1])
         _fill_rates(sides, rates)
         _fill_spread(rates, spread)
         _fill_flow(rates, spread, flow)
@@ -164,20 +169,29 @@ def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray, chain: i
 
 
 @inlined
-def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
-    """Return the mean over the stages b of the other side, given a, shape (relations, 7)."""
+def stage_means(
+    alone: FloatArray, known: Records, given: FloatArray, by_stage: FloatArray
+) -> FloatArray:
+    """Return the mean over the stages b of the other side, given a, shape (relations, 7).
+
+    Args:
+        alone: Time-weighted stages of the interferer of each relation, for want of a chain.
+        known: The relations that have one.
+        given: P(b | a) of these.
+        by_stage: What is averaged, by b.
+    """
     result = np.empty(by_stage.shape)
     for at in range(len(by_stage)):
         mean = 0.0
         for b in range(STAGES):
-            mean = mean + given.alone[at, b] * by_stage[at, b]
+            mean = mean + alone[at, b] * by_stage[at, b]
         for a in range(STAGES):
             result[at, a] = mean
-    for place in range(len(given.relation)):
-        at = given.relation[place]
+    for place in range(len(known)):
+        at = known[place].one
         for a in range(STAGES):
             mean = 0.0
             for b in range(STAGES):
-                mean = mean + given.stages[place, a, b] * by_stage[at, b]
+                mean = mean + given[place, a, b] * by_stage[at, b]
             result[at, a] = mean
     return result

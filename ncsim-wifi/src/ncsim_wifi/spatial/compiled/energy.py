@@ -7,8 +7,37 @@ import numpy as np
 from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.compiled.state import State, Traffic
 from ncsim_wifi.spatial.compiled.sums import halving_sum
+from ncsim_wifi.spatial.compiled.tables import Constants, Energy, Records
 from ncsim_wifi.spatial.energy import KINDS, TINY, GateMasks, Silenced, Silencing
+from ncsim_wifi.spatial.overlap import LARGEST_ON, LEAST_ON
+
+
+@inlined
+def gates_of(
+    constants: Constants, energy: Energy, relations: Records, state: State, traffic: Traffic
+) -> tuple[FloatArray, FloatArray]:
+    """Return al and be of each relation, and update B."""
+    count, times = len(relations), traffic.times
+    if not len(energy.station):
+        return np.ones(count), np.ones(count)
+    rows, members = energy.member.shape
+    on = np.empty((rows, members))
+    for row in range(rows):
+        for place in range(members):
+            w = energy.member[row, place]
+            stretch = (times.on_air_us[w] + constants.energy_tail_us) / times.busy_us[w]
+            part = traffic.on[energy.station[row], w] * stretch
+            on[row, place] = min(max(part, LEAST_ON), LARGEST_ON)
+    found = silenced_by(energy.silencing, on)
+    for row in range(len(on)):
+        own = state.stations[energy.station[row]]
+        fresh = own.blocked + constants.gain * (found.blocked[row] - own.blocked)
+        own.blocked = min(fresh, LARGEST_ON)
+    for at in range(count):
+        found.during[at] = 1.0 - (1.0 - found.during[at]) * relations[at].protection_ends
+    return found.before, found.during
 
 
 @inlined

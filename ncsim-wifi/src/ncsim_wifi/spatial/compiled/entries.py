@@ -1,100 +1,37 @@
-"""The compiled functions that are called from outside, as numba keeps them on disk.
+"""The compiled function that is called from outside, as numba keeps it on disk.
 
-All are made here, and enclose what stands for their sources: see ``state_of``.
+It encloses what stands for its sources: see ``state_of``.
 """
 
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
+from zlib import crc32
 
 from ncsim_core.compiling import kept_on_disk, state_of
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange
-from ncsim_wifi.spatial.chains import Given, SideRates
-from ncsim_wifi.spatial.compiled import attempts, chains, energy, gaps, occupancy, overlap
-from ncsim_wifi.spatial.energy import Silenced, Silencing
-from ncsim_wifi.spatial.forms import Forms
-from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows
-from ncsim_wifi.spatial.occupancy import Occupancy, SetTable
-from ncsim_wifi.spatial.overlap import Helped
+from ncsim_wifi.spatial.compiled import solve
+from ncsim_wifi.spatial.compiled.state import State
+from ncsim_wifi.spatial.compiled.tables import Tables
+
+Advance = Callable[[Tables, State, int, int], FloatArray]
 
 
-def loops_of(sources: str) -> Forms:
+def loops_of(sources: str) -> Advance:
     """Return the compiled loops.
 
     Args:
         sources: Stands for what they are compiled from; not empty.
     """
-    attempts_of, silenced_by, exact_occupancy = _loops_over_stations(sources)
-    survival, helped_kill, joint_stages, stage_means = _loops_over_relations(sources)
-    return Forms(
-        attempts_of=attempts_of,
-        survival=survival,
-        joint_stages=joint_stages,
-        stage_means=stage_means,
-        silenced_by=silenced_by,
-        exact_occupancy=exact_occupancy,
-        helped_kill=helped_kill,
-    )
 
-
-AttemptsOf = Callable[[Contenders, Exchange], Attempts]
-SilencedBy = Callable[[Silencing, FloatArray], Silenced]
-ExactOccupancy = Callable[[SetTable, FloatArray], Occupancy]
-
-
-def _loops_over_stations(sources: str) -> tuple[AttemptsOf, SilencedBy, ExactOccupancy]:
-    def attempts_of(contenders: Contenders, times: Exchange) -> Attempts:
+    def advance(tables: Tables, state: State, first: int, stop: int) -> FloatArray:
         assert sources
-        return attempts.attempts_of(contenders, times)
+        return solve.advance(tables, state, first, stop)
 
-    def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
-        assert sources
-        return energy.silenced_by(tables, on)
-
-    def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
-        assert sources
-        return occupancy.exact_occupancy(table, activity)
-
-    return kept_on_disk(attempts_of), kept_on_disk(silenced_by), kept_on_disk(exact_occupancy)
-
-
-Survives = Callable[[Interferers, Windows], Survival]
-HelpedKill = Callable[[Helped, FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
-JointStages = Callable[[SideRates, SideRates], FloatArray]
-StageMeans = Callable[[Given, FloatArray], FloatArray]
-
-
-def _loops_over_relations(sources: str) -> tuple[Survives, HelpedKill, JointStages, StageMeans]:
-    def survival(met: Interferers, windows: Windows) -> Survival:
-        assert sources
-        return gaps.survival(met, windows)
-
-    def helped_kill(
-        helped: Helped,
-        on: FloatArray,
-        on_air_us: FloatArray,
-        busy_us: FloatArray,
-        eager: FloatArray,
-    ) -> FloatArray:
-        assert sources
-        return overlap.helped_kill(helped, on, on_air_us, busy_us, eager)
-
-    def joint_stages(one: SideRates, two: SideRates) -> FloatArray:
-        assert sources
-        return chains.joint_stages(one, two)
-
-    def stage_means(given: Given, by_stage: FloatArray) -> FloatArray:
-        assert sources
-        return chains.stage_means(given, by_stage)
-
-    return (
-        kept_on_disk(survival),
-        kept_on_disk(helped_kill),
-        kept_on_disk(joint_stages),
-        kept_on_disk(stage_means),
-    )
+    # what numba keeps refers to classes by name: it cannot be read once one of them is gone
+    advance.__qualname__ = f"advance_{crc32(sources.encode()):08x}"
+    return kept_on_disk(advance)
 
 
 def _sources() -> str:
@@ -105,4 +42,4 @@ def _sources() -> str:
     return state_of(files)
 
 
-LOOPS: Final = loops_of(_sources())
+ADVANCE: Final = loops_of(_sources())

@@ -7,35 +7,48 @@ import numpy as np
 from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON, Helped
+from ncsim_wifi.spatial.attempts import Exchange
+from ncsim_wifi.spatial.backoff import STAGES
+from ncsim_wifi.spatial.compiled.tables import Helpers
+from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_ON
 
 
 @inlined
 def helped_kill(
-    helped: Helped, on: FloatArray, on_air_us: FloatArray, busy_us: FloatArray, eager: FloatArray
+    helpers: Helpers, scale: float, on: FloatArray, times: Exchange, eager: FloatArray
 ) -> FloatArray:
-    """Return kd of each of these relations, by stage of the sender."""
-    count, helpers, stages = eager.shape
-    result = np.empty((count, stages))
-    killed, total = np.empty(1 << helpers), np.empty(1 << helpers)
+    """Return kd of each of these relations, by stage of the sender.
+
+    Args:
+        helpers: The relations, and who helps.
+        scale: Calibrated factor of the overlap.
+        on: A[u, w].
+        times: How long exchanges take.
+        eager: How eager the interferer of each relation is by stage of the sender.
+    """
+    on_air_us, busy_us = times.on_air_us, times.busy_us
+    count, most = helpers.helper.shape
+    result = np.empty((count, STAGES))
+    killed, total = np.empty(1 << most), np.empty(1 << most)
     for at in range(count):
-        own, station = helped.own[at], helped.station[at]
+        own, station = helpers.helped[at].own, helpers.helped[at].station
         part = min(max(on[own, station], LEAST_ON), LARGEST_ON)
-        window_us = _overlap_us(
-            on_air_us[station], busy_us[station] / part, helped.protected_us[at], helped.scale
-        )
-        for stage in range(stages):
-            for held in range(1 << helpers):
-                total[held] = helped.omega[at, held]
-                killed[held] = helped.omega[at, held] * helped.kill[at, held]
-            for place in range(helpers - 1, -1, -1):
-                helper, met = helped.helper[at, place], 0.0
-                if helper >= 0:
-                    part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
-                    part = part * (on_air_us[helper] / busy_us[helper])
-                    part = min(part * eager[at, place, stage], LARGEST_ON)
-                    met = _met(part, on_air_us[helper], window_us)
-                half = 1 << place
+        protected_us = helpers.helped[at].protected_us
+        window_us = _overlap_us(on_air_us[station], busy_us[station] / part, protected_us, scale)
+        for stage in range(STAGES):
+            for held in range(1 << most):
+                total[held] = helpers.omega[at, held]
+                killed[held] = helpers.omega[at, held] * helpers.kill[at, held]
+            for place in range(most - 1, -1, -1):
+                helper, half = helpers.helper[at, place], 1 << place
+                if helper < 0:
+                    continue  # nobody is never there
+                part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
+                part = part * (on_air_us[helper] / busy_us[helper])
+                relation = helpers.helper_relation[at, place]
+                if relation >= 0:
+                    part = part * eager[relation, stage]
+                met = _met(min(part, LARGEST_ON), on_air_us[helper], window_us)
                 for held in range(half):
                     killed[held] = killed[held] * (1.0 - met) + killed[half + held] * met
                     total[held] = total[held] * (1.0 - met) + total[half + held] * met

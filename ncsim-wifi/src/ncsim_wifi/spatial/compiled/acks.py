@@ -1,0 +1,116 @@
+"""Frames lost to acknowledgements, and acknowledgements lost, link by link.
+
+Source: MODEL 3.9; see ``ncsim_wifi.spatial.acks``.
+"""
+
+import math
+
+import numpy as np
+from ncsim_core.compiling import inlined
+
+from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.compiled.collisions import multiply
+from ncsim_wifi.spatial.compiled.state import State, Traffic
+from ncsim_wifi.spatial.compiled.tables import Air, Constants, Records
+
+
+@inlined
+def lose_answers(
+    constants: Constants,
+    air: Air,
+    state: State,
+    traffic: Traffic,
+    spared: FloatArray,
+    base: FloatArray,
+) -> FloatArray:
+    """Multiply by what acknowledgements leave; return how many of their own senders receive."""
+    sending = traffic.sending
+    if constants.rts_cts:
+        sending = _not_stopped(air, state, sending)
+    heard, sent = np.empty(len(base)), np.empty(len(base))
+    _fill_heard(air, sending, spared, heard)
+    left = heard.copy()
+    for link in range(len(base)):
+        own, rate_per_us = state.links[link], traffic.rate_per_us[air.links[link].station]
+        sent[link] = rate_per_us * own.attempts * (1.0 - own.loss)
+        if constants.rts_cts:
+            sent[link] = sent[link] * 2.0
+    _spare_acks(air, spared, sent, left)
+    multiply(base, left)
+    return heard
+
+
+@inlined
+def _not_stopped(air: Air, state: State, sending: FloatArray) -> FloatArray:
+    """Return how likely stations send although a CTS may have stopped them."""
+    count = len(sending)
+    stopped = np.zeros((count, count))
+    for link in range(len(air.links)):
+        part = state.links[link].attempts * state.links[link].answered
+        for w in range(count):
+            meeting = air.meetings[link, w]
+            stopped[air.links[link].station, w] += part * meeting.silenced
+    left = np.empty((count, count))
+    for u in range(count):
+        for w in range(count):
+            left[u, w] = sending[u, w] * (1.0 - stopped[w, u])
+    return left
+
+
+@inlined
+def fill_spared(
+    constants: Constants, relations: Records, kill: FloatArray, spared: FloatArray
+) -> None:
+    """Fill what stations leave of frames that they overlap."""
+    for at in range(len(kill)):
+        own = relations[at]
+        lost = own.alone_kill if own.by_cts_only and constants.rts_cts else kill[at]
+        spared[own.link, own.station] = 1.0 - lost
+
+
+@inlined
+def _fill_heard(air: Air, sending: FloatArray, spared: FloatArray, heard: FloatArray) -> None:
+    """Fill the part of acknowledgements that senders receive.
+
+    Args:
+        air: Links and stations.
+        sending: How likely w is sending while u may count, shape (stations u, stations w).
+        spared: Part of the data of each link that a station does not destroy.
+        heard: What is filled.
+    """
+    for link in range(len(heard)):
+        product, u = 1.0, air.links[link].station
+        for w in range(len(sending)):
+            part = min(max(sending[u, w] * spared[link, w], 0.0), 1.0)
+            product = product * (1.0 - air.meetings[link, w].deaf_to_ack * part)
+        heard[link] = product
+
+
+@inlined
+def _spare_acks(air: Air, spared: FloatArray, sent: FloatArray, survives: FloatArray) -> None:
+    """Multiply by what acknowledgements of hidden links leave of frames.
+
+    Args:
+        air: Links and stations.
+        spared: Part of the data of each link that a station does not destroy.
+        sent: Acknowledgements per time of each link.
+        survives: What is multiplied.
+    """
+    product = np.ones(len(survives))
+    for ack in air.acks:
+        link, other = ack.one, ack.two
+        window_us = air.links[link].protected_us + air.links[other].ack_us
+        kill = ack.kill * spared[link, air.links[other].station]
+        product[link] *= max(1e-12, _ack_survival(window_us * sent[other], kill))
+    multiply(survives, product)
+
+
+@inlined
+def _ack_survival(expected: float, kill: float) -> float:
+    """Return f, what a frame survives if a number of acknowledgements falls into it."""
+    whole = math.floor(expected)
+    kill = min(kill, 1.0)
+    spared = 1.0 - (expected - whole) * kill
+    for _ in range(int(whole)):
+        spared = spared * (1.0 - kill)
+    return spared
