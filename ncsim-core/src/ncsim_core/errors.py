@@ -3,6 +3,13 @@
 How a run ends is not an error: see ``ncsim_core.engine.outcome.RunStatus``.
 """
 
+import traceback
+from pathlib import Path
+from typing import Final
+
+OURS: Final = ("ncsim_core", "importlib", "pluggy")
+"""Packages that call plug-ins: what they raise is not where a plug-in went wrong."""
+
 
 class NcsimError(Exception):
     """Root of all errors that ncsim raises on purpose."""
@@ -38,3 +45,27 @@ class ConvergenceError(NcsimError):
 
 class EngineError(NcsimError):
     """ncsim broke one of its own invariants: a bug, please report it."""
+
+
+def told(error: BaseException) -> str:
+    """Return what a plug-in raised and, as far as its own code was reached, where.
+
+    >>> told(ValueError("too small"))
+    'ValueError: too small'
+    """
+    frames = [
+        (str(frame.f_globals.get("__name__", "")), frame.f_code.co_filename, line)
+        for frame, line in traceback.walk_tb(error.__traceback__)
+    ]
+    theirs = [each for each in frames if _package(each[0]) not in OURS]
+    text = f"{type(error).__name__}: {error}"
+    if not theirs:
+        return text
+    owner = _package(theirs[0][0])
+    module, filename, line = [each for each in theirs if _package(each[0]) == owner][-1]
+    folder = "/".join(module.split(".")[:-1])
+    return f"{text} ({folder}{'/' if folder else ''}{Path(filename).name}, line {line})"
+
+
+def _package(module: str) -> str:
+    return module.partition(".")[0]

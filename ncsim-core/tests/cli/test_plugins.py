@@ -183,6 +183,43 @@ def test_check_of_a_plugin_that_does_not_load_fails_with_the_reason(fake_dist):
     assert "failed: loads: failed: ZeroDivisionError" in result.output
 
 
+def test_check_says_once_what_keeps_a_component_from_answering_at_all(fake_dist):
+    component = '"scheduler", "broken", "broken_code:Broken", "Breaks."'
+    code = SCHEDULERS.replace("Forgetful", "Broken").replace("plan = super()", "plan = 1 / 0  #")
+    fake_dist("broken-dist", {"broken_declaration": declaring(component), "broken_code": code})
+
+    lines = run("check", "broken-dist").output.splitlines()
+
+    failed = [line for line in lines if line.lstrip().startswith("failed:")]
+    assert len(failed) == 1, lines
+    assert "runs_obey_the_rules, equal_runs_leave_equal_traces" in failed[0]
+    assert (
+        "it answers nothing: ZeroDivisionError: division by zero (broken_code.py, line 7)"
+        in (failed[0])
+    )
+    assert len(lines) < 20
+
+
+def test_check_names_the_option_that_the_class_does_not_take(fake_dist):
+    options = (
+        "options={'type': 'object', 'additionalProperties': False, 'properties': "
+        "{'spread': {'type': 'integer', 'default': 1, 'description': 'How many.'}}}"
+    )
+    forgetful(fake_dist, f", {options}")
+
+    output = run("check", "forgetful-dist").output
+
+    assert "factory_takes_every_option: forgetful_code:Forgetful must take a context" in output
+    assert "declared options (spread)" in output
+
+
+def test_check_of_a_package_without_entry_point_says_what_is_missing():
+    error = run("check", "pytest").exception
+
+    assert "is installed, but offers no entry point in the group 'ncsim.plugins'" in str(error)
+    assert "did you mean 'ncsim-core'" in str(run("check", "ncsim-cor").exception)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_new_project_passes_its_own_tests(kind, tmp_path):
     name = f"ncsim-made-{kind.replace('_', '-')}"

@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 from ncsim_core.builtin.routing_models import DirectRouting
 from ncsim_core.builtin.schedulers import ManualScheduler
@@ -268,7 +269,7 @@ class Answering(Scheduler):
         self.answer = answer
 
     def schedule(self, dag, snapshot):
-        if isinstance(self.answer, Exception):
+        if isinstance(self.answer, BaseException):
             raise self.answer
         return self.answer
 
@@ -283,7 +284,8 @@ class Answering(Scheduler):
             PlacementPlan({"T0": "n0", "T1": ["n0"]}),
             r"task 'T1' is placed on unknown node \['n0'\]",
         ),
-        (ZeroDivisionError("oops"), "raised ZeroDivisionError: oops"),
+        (ZeroDivisionError("oops"), r"raised ZeroDivisionError: oops \(.*test_simulation.py, line"),
+        (SystemExit(3), r"raised SystemExit: 3"),
     ],
 )
 def test_a_bad_plan_fails_the_run_and_names_the_scheduler(answer, message):
@@ -304,7 +306,25 @@ def test_a_factor_outside_zero_and_one_fails_the_run(factor):
     outcome = run(line(2), chain(2, pins={0: 0, 1: 1}), interference=Wrong({})).outcome
 
     assert outcome.status is RunStatus.FAILED
-    assert f"the factor {factor!r}" in outcome.detail
+    assert f"the factor {factor!r}, not 0 to 1" in outcome.detail
+
+
+@pytest.mark.parametrize(
+    ("method", "answer", "message"),
+    [
+        ("factors", [1.0], "factors() gave list, not an array of shape (1,)"),
+        ("factors", None, "factors() gave NoneType"),
+        ("factors", np.ones(9), "factors() gave (9,), not an array of shape (1,)"),
+        ("reach", None, "reach() gave None, not a collection of links"),
+    ],
+)
+def test_an_answer_of_the_wrong_form_is_told_as_such(method, answer, message):
+    wrong = type("Wrong", (ToyRadio,), {method: lambda *_: answer})
+
+    outcome = run(line(2), chain(2, pins={0: 0, 1: 1}), interference=wrong({})).outcome
+
+    assert outcome.status is RunStatus.FAILED
+    assert message in outcome.detail
 
 
 def test_a_queue_that_invents_tasks_fails_the_run():

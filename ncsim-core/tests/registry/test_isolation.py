@@ -225,3 +225,16 @@ def test_damaged_metadata_of_a_stranger_does_not_stop_loading(fake_dist):
 
     assert record_of(registry, "ncsim-core").status == "ok"
     assert any(each.status == "failed" for each in registry.plugins)
+
+
+def test_an_entry_point_to_a_function_says_which_module_to_write(fake_dist: FakeDist):
+    fake_dist(
+        "bad-dist",
+        {"bad_declaration": f"{DECLARATION}{GOOD}"},
+        entry_points={"bad": "bad_declaration:ncsim_components"},
+    )
+
+    record = next(each for each in load_registry().plugins if each.distribution == "bad-dist")
+
+    assert record.status == "failed"
+    assert "which is no module; write 'bad_declaration'" in record.detail

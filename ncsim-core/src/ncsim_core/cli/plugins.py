@@ -22,6 +22,7 @@ app = typer.Typer(
     help="Look at installed plug-ins, check them, and start a new one.",
 )
 
+NAMED = 3  # checks that fail for one reason are named up to here; --json has them all
 SECTION = "section"  # of config; shown as a component is
 SHOWN = ("qualified_name", "version", "summary", "source", "factory", "capabilities")
 
@@ -230,9 +231,28 @@ def _records_to_check(registry: "Registry", distribution: str | None) -> list["P
     wanted = normalised(distribution)
     found = [each for each in registry.plugins if each.distribution == wanted]
     if not found:
-        installed = ", ".join(each.distribution for each in registry.plugins)
-        raise PluginError(f"no plug-in package {distribution!r}; installed: {installed}")
+        raise PluginError(
+            _not_a_plugin(distribution, [each.distribution for each in registry.plugins])
+        )
     return found
+
+
+def _not_a_plugin(distribution: str, plugins: Sequence[str]) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    from ncsim_core.plugins import PLUGIN_GROUP
+    from ncsim_core.registry.messages import close_match
+
+    try:
+        there = f"{distribution} {version(distribution)} is installed"
+    except PackageNotFoundError:
+        meant = close_match(distribution, plugins)
+        hint = f"did you mean {meant!r}? " if meant else ""
+        return f"no plug-in package {distribution!r}; {hint}installed: {', '.join(plugins)}"
+    return (
+        f"{there}, but offers no entry point in the group {PLUGIN_GROUP!r}; add one to its "
+        "pyproject.toml and install it again"
+    )
 
 
 def _checked(
@@ -265,10 +285,14 @@ def _checked(
 
 def _result_lines(label: str, results: Sequence["CheckResult"]) -> Iterator[str]:
     yield f"{label}: {_counts(results)}"
+    alike: dict[tuple[str, str], list[str]] = {}
     for each in results:
         if each.status != "passed":
-            detail = each.detail.replace("\n", "\n      ")
-            yield f"    {each.status.replace('_', ' ')}: {each.check}: {detail}"
+            alike.setdefault((each.status, each.detail), []).append(each.check)
+    for (status, detail), checks in alike.items():
+        indented = detail.replace("\n", "\n      ")
+        more = f" and {len(checks) - NAMED} more" if len(checks) > NAMED else ""
+        yield f"    {status.replace('_', ' ')}: {', '.join(checks[:NAMED])}{more}: {indented}"
 
 
 def _counts(results: Sequence["CheckResult"]) -> str:

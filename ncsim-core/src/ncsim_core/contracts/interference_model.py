@@ -169,7 +169,7 @@ class PlainSession(InterferenceSession):
         links = self._links_to_ask([*on, *off])
         if not links:
             return (), ()
-        factors = self._model.factors(links, self._factor_by_link.keys()).tolist()
+        factors = _listed(self._model.factors(links, self._factor_by_link.keys()), len(links))
         changed = [
             (link, factor)
             for link, factor in zip(links, factors, strict=True)
@@ -185,11 +185,27 @@ class PlainSession(InterferenceSession):
     def _links_to_ask(self, switched: Sequence[LinkIndex]) -> list[LinkIndex]:
         if self._is_global:
             return sorted(self._factor_by_link)
-        reached = set(self._model.reach(switched))
+        answer: object = self._model.reach(switched)
+        if not isinstance(answer, Collection):
+            raise TypeError(f"reach() gave {answer!r}, not a collection of links")
+        reached = set(answer)
         if not reached.issuperset(switched):
             left_out = sorted(set(switched) - reached)
             raise ValueError(f"reach() leaves out the changed links {left_out}")
         return sorted(self._factor_by_link.keys() & reached)
+
+
+def _listed(factors: "NDArray[np.float64]", count: int) -> list[float]:
+    """Return factors as a list.
+
+    Raises:
+        TypeError: They are no array, or not as many as links were asked about.
+    """
+    shape = getattr(factors, "shape", type(factors).__name__)
+    if shape != (count,):
+        raise TypeError(f"factors() gave {shape}, not an array of shape ({count},)")
+    listed: list[float] = factors.tolist()
+    return listed
 
 
 class Unaffected(InterferenceSession):

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from ncsim_core.errors import NcsimError, PluginError
+from ncsim_core.errors import NcsimError, PluginError, told
 from ncsim_core.network import LinkIndex, Network, NodeIndex, Route, route_fault
 
 
@@ -66,8 +66,8 @@ class RouteTable:
             return self._rows[source][target]
         except NcsimError:
             raise
-        except Exception as error:
-            raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"{self._label} raised {told(error)}") from error
 
     def _row(self, source: NodeIndex) -> Sequence[Route | None]:
         """Return the model's answers for one source; they are checked when they are asked for."""
@@ -76,8 +76,8 @@ class RouteTable:
             count = len(answers)
         except NcsimError:
             raise
-        except Exception as error:
-            raise PluginError(f"{self._label} raised {type(error).__name__}: {error}") from error
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"{self._label} raised {told(error)}") from error
         if count != len(self._network.nodes):
             raise PluginError(
                 f"{self._label}: routes_from() gave {count} routes "

@@ -13,7 +13,7 @@ from ncsim_core.builtin.queue_models import FifoQueue
 from ncsim_core.contracts.interference_model import Competition, InterferenceSession, RouteRates
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.scheduler import NetworkSnapshot
-from ncsim_core.errors import NcsimError, PlacementError, PluginError
+from ncsim_core.errors import NcsimError, PlacementError, PluginError, told
 from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkIndex, Network, NodeId, NodeIndex, Route
 from ncsim_core.workflow import DAG, Injection, PlacementPlan
@@ -32,8 +32,8 @@ def asked(identity: ComponentIdentity, question: Callable[[], T]) -> T:
         return question()
     except NcsimError:
         raise
-    except Exception as error:
-        raise PluginError(f"{identity} raised {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"{identity} raised {told(error)}") from error
 
 
 def checked_injections(models: Models) -> tuple[Injection, ...]:
@@ -114,11 +114,11 @@ class CheckedSession(InterferenceSession):
             ]
         except NcsimError:
             raise
-        except Exception as error:
-            raise PluginError(f"{self._who} raised {type(error).__name__}: {error}") from error
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"{self._who} raised {told(error)}") from error
         if wrong:
             link, factor = wrong[0]
-            raise PluginError(f"{self._who} gave link {link} the factor {factor!r}")
+            raise PluginError(f"{self._who} gave link {link} the factor {factor!r}, not 0 to 1")
         return links, factors
 
     @override

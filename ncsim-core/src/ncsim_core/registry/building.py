@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 from ncsim_core.context import BuildContext
-from ncsim_core.errors import NcsimError, PluginError, ScenarioError
+from ncsim_core.errors import NcsimError, PluginError, ScenarioError, told
 from ncsim_core.models import ComponentIdentity
 from ncsim_core.plugins import KINDS
 from ncsim_core.registry.messages import close_match
@@ -62,7 +62,7 @@ def imported(registered: RegisteredComponent, identity: ComponentIdentity) -> Fa
     try:
         factory = load_object(location)
     except (Exception, SystemExit) as error:
-        raise PluginError(f"{identity}: cannot import {location}: {_told(error)}") from error
+        raise PluginError(f"{identity}: cannot import {location}: {told(error)}") from error
     if not callable(factory):
         raise PluginError(f"{identity}: {location} is {factory!r}, which cannot be called")
     return factory
@@ -85,7 +85,7 @@ def built(
     except NcsimError:
         raise
     except (Exception, SystemExit) as error:
-        raise PluginError(f"{identity}: building it failed: {_told(error)}") from error
+        raise PluginError(f"{identity}: building it failed: {told(error)}") from error
     contract = contract_of(identity.kind)
     if not isinstance(component, contract):
         raise PluginError(
@@ -109,7 +109,3 @@ def factory_fault(registered: RegisteredComponent) -> str | None:
     if isinstance(factory, type) and not issubclass(factory, contract):
         return f"{identity}: {factory.__name__} is no {contract.__name__}"
     return None
-
-
-def _told(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"

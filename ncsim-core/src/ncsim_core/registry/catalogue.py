@@ -6,7 +6,7 @@ from functools import cached_property
 import pluggy
 
 from ncsim_core.context import BuildContext
-from ncsim_core.errors import NcsimError, PluginError, UnknownComponentError
+from ncsim_core.errors import NcsimError, PluginError, UnknownComponentError, told
 from ncsim_core.models import ComponentIdentity
 from ncsim_core.plugins import KINDS, RunInfo
 from ncsim_core.registry.building import built, checked_options, imported
@@ -173,9 +173,7 @@ class Registry:
                 raise
             except (Exception, SystemExit) as error:
                 owner = implementation.plugin_name.partition(":")[0]
-                raise PluginError(
-                    f"plug-in {owner}: {hook_name}() raised {type(error).__name__}: {error}"
-                ) from error
+                raise PluginError(f"plug-in {owner}: {hook_name}() raised {told(error)}") from error
 
     @cached_property
     def _offers(self) -> Mapping[str, Mapping[str, list[RegisteredComponent]]]:

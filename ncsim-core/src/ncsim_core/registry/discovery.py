@@ -108,7 +108,7 @@ class _Loading:
         """Load one entry point; on any fault, leave nothing of it but its record."""
         module: ModuleType | None = None
         try:
-            module = entry_point.load()
+            module = _declaration_of(entry_point)
             api = getattr(module, "NCSIM_PLUGIN_API", None)
             record = replace(record, api=str(api or ""))
             self._register(module, api, record)
@@ -158,6 +158,16 @@ def _found_plugins() -> list[tuple[EntryPoint, PluginRecord]]:
     return sorted(
         found, key=lambda each: (each[1].distribution != CORE, each[1].distribution, each[0].name)
     )
+
+
+def _declaration_of(entry_point: EntryPoint) -> ModuleType:
+    loaded: object = entry_point.load()
+    if not isinstance(loaded, ModuleType):
+        meant = entry_point.module
+        raise PluginError(
+            f"its entry point is {entry_point.value!r}, which is no module; write {meant!r}"
+        )
+    return loaded
 
 
 def _identify(entry_point: EntryPoint) -> PluginRecord:

@@ -11,7 +11,7 @@ from typing import Any, Final
 from ncsim_core.context import BuildContext, ModelCache
 from ncsim_core.contracts.link_model import LinkModel
 from ncsim_core.contracts.routing_model import RouteTable, RoutingModel
-from ncsim_core.errors import NcsimError, PluginError
+from ncsim_core.errors import NcsimError, PluginError, told
 from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkRates, Network
 from ncsim_core.registry import Registry, get_registry
@@ -93,9 +93,8 @@ def _rated(scenario: Scenario, link_model: LinkModel, identity: ComponentIdentit
         fault = link_rates_fault(rates, len(network.links))
     except NcsimError:
         raise
-    except Exception as error:  # a plug-in may do anything
-        text = f"{identity} raised {type(error).__name__}: {error}"
-        raise PluginError(text) from error
+    except (Exception, SystemExit) as error:  # a plug-in may do anything
+        raise PluginError(f"{identity} raised {told(error)}") from error
     if fault is not None:
         raise PluginError(f"{identity}: rate_links(): {fault}")
     return network.with_rates(rates)

@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
-from ncsim_core.errors import ModelScopeError, PlacementError, ScenarioError
+from ncsim_core.errors import ModelScopeError, NcsimError, PlacementError, ScenarioError, told
 from ncsim_core.testing.questions import Case
 from ncsim_core.testing.results import Check, CheckResult, CheckStatus
 from ncsim_core.testing.subject import Subject
+from ncsim_core.testing.telling import example_text
 
 if TYPE_CHECKING:
     from ncsim_core.registry import Registry
@@ -42,6 +43,9 @@ class ComponentChecks(Protocol):
     def subject(self) -> Subject:
         """Return the component with default options."""
 
+    def standstill(self) -> str | None:
+        """Return why the component answers nothing at all."""
+
     def option_values(self, subject: Subject) -> SearchStrategy[Mapping[str, object]]:
         """Return the options to draw."""
 
@@ -55,7 +59,7 @@ class ComponentChecks(Protocol):
 
 
 def check(
-    *, capability: str | None = None, is_drawn: bool = True
+    *, capability: str | None = None, is_drawn: bool = True, asks: bool = True
 ) -> Callable[[CheckBody], CheckBody]:
     """Mark a method ``check_<name>(self, subject, ...)`` as a check."""
 
@@ -63,7 +67,7 @@ def check(
         parameters = list(inspect.signature(body).parameters)[2:]
         name = body.__name__.removeprefix(PREFIX)
         body.ncsim_check = Check(  # type: ignore[attr-defined]
-            name, body, capability, is_drawn, tuple(parameters)
+            name, body, capability, is_drawn, tuple(parameters), asks
         )
         return body
 
@@ -90,7 +94,9 @@ def result_of(suite: ComponentChecks, one: Check, expected: Mapping[str, str]) -
     if one.capability is not None and subject.capability(one.capability) is None:
         return finish("skipped", f"does not declare {one.capability}")
     reason = expected.get(one.name)
+    standstill = suite.standstill() if one.asks else None
     try:
+        assert standstill is None, standstill
         note = run(suite, one, subject)
     except (Exception, SystemExit) as error:  # a check of a stranger's code reports, never breaks
         if reason is not None:
@@ -111,7 +117,7 @@ def run(suite: ComponentChecks, one: Check, subject: Subject) -> str:
         return ""
     known = suite.strategies()
     drawn = st.fixed_dictionaries({name: known[name] for name in one.drawn})
-    patience = _Patience()
+    patience, usual = _Patience(), subject.sections
 
     def on_example(
         options: Mapping[str, object],
@@ -127,13 +133,19 @@ def run(suite: ComponentChecks, one: Check, subject: Subject) -> str:
             reject()  # a component may say that an input is not for it
         except BaseException:
             patience.has_failed = True
+            others = {name: each for name, each in sections.items() if each != usual.get(name)}
+            patience.example = example_text(options, others, values)
             raise
         patience.examples += 1
 
     test = given(
         options=suite.option_values(subject), sections=suite.section_values(subject), values=drawn
     )(on_example)
-    steady_settings(suite.examples)(test)()
+    try:
+        steady_settings(suite.examples)(test)()
+    except BaseException as error:
+        _put_example(error, patience.example)  # the last that failed is the smallest
+        raise
     return f"stopped after {patience.examples} examples, it is slow" if patience.is_over else ""
 
 
@@ -143,6 +155,7 @@ class _Patience:
     def __init__(self) -> None:
         self.has_failed = False
         self.examples = 0
+        self.example = ""
         self._until_s = time.perf_counter() + ENOUGH_s
 
     @property
@@ -182,13 +195,20 @@ def check_component(
 
 
 def described(error: BaseException) -> str:
-    """Return an error with hypothesis's falsifying example, for people."""
+    """Return an error with the failing example, for people."""
     if isinstance(error, Unsatisfiable):
         return "it refused every example that was tried"
-    text = str(error) if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}"
-    examples = ("Failing test case", "Falsifying example")  # the wording depends on its version
-    notes = [note for note in getattr(error, "__notes__", ()) if note.startswith(examples)]
-    return "\n".join([text, *notes])
+    if isinstance(error, AssertionError):
+        text = str(error)
+    else:
+        text = str(error) if isinstance(error, NcsimError) else told(error)
+    return "\n".join([text, *getattr(error, "__notes__", ())])
+
+
+def _put_example(error: BaseException, example: str) -> None:
+    """Put the example in place of hypothesis's own, which shows every field of every object."""
+    if example:
+        error.__notes__ = [f"the smallest example found:\n{example}"]
 
 
 def _settled(subject: Subject, value: object) -> object:

@@ -48,11 +48,14 @@ def _other() -> str:
 
 
 def _answer() -> None:
+    answer_to = os.dup(1)
+    os.dup2(2, 1)  # what a component prints is no part of the answer
     kind, name, options, sections, cases = pickle.load(sys.stdin.buffer)
     registry = get_registry()
     subject = Subject(registry, registry.find(kind, name), options, sections)
     answers = [subject.ask(subject.build(case), case) for case in cases]
-    sys.stdout.buffer.write(pickle.dumps(answers))
+    with os.fdopen(answer_to, "wb") as file:
+        file.write(pickle.dumps(answers))
 
 
 if __name__ == "__main__":

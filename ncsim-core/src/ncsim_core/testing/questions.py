@@ -4,7 +4,7 @@ Free of hypothesis and pytest, because a child process asks the same questions u
 hash seed.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, cast
 
@@ -18,7 +18,7 @@ from ncsim_core.network import LinkId, LinkIndex, Network, Route
 from ncsim_core.testing import builders
 from ncsim_core.testing.builders import make_snapshot
 from ncsim_core.testing.oracle import FewestHops
-from ncsim_core.workflow import DAG, DagId, Injection, TaskId
+from ncsim_core.workflow import DAG, DagId, Injection, PlacementPlan, TaskId
 
 Answer: TypeAlias = object
 
@@ -61,7 +61,8 @@ class Case:
 def ask_scheduler(component: object, case: Case) -> Answer:
     """Return the plan as pairs of task and node, in task order."""
     assert case.dag is not None
-    plan = cast("Scheduler", component).schedule(case.dag, make_snapshot(case.network))
+    plan: object = cast("Scheduler", component).schedule(case.dag, make_snapshot(case.network))
+    assert isinstance(plan, PlacementPlan), f"schedule() gave {plan!r}, not a PlacementPlan"
     return sorted(plan.nodes.items())
 
 
@@ -81,9 +82,13 @@ def ask_link_model(component: object, case: Case) -> Answer:
 def ask_interference_model(component: object, case: Case) -> Answer:
     """Return factors, reach and competition of the active links, and the rates of routes."""
     model = cast("InterferenceModel", component)
+    factors: object = model.factors(case.active, case.active)
+    assert isinstance(factors, Iterable), f"factors() gave {factors!r}, not an array of numpy"
+    reach: object = model.reach(case.active)
+    assert isinstance(reach, Collection), f"reach() gave {reach!r}, not a collection of links"
     return (
-        [float(each) for each in model.factors(case.active, case.active)],
-        sorted(model.reach(case.active)),
+        [float(each) for each in factors],
+        sorted(reach),
         [tuple(each) for each in model.competition(case.active, case.active)],
         route_answers(model, case.usable_routes) if model.decides_routes else [],
     )

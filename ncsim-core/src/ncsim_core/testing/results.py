@@ -19,6 +19,7 @@ class Check:
         capability: Run only for components that declare it.
         is_drawn: Whether options and cases are drawn; otherwise it runs once.
         drawn: Names of the parameters to be drawn.
+        asks: Whether a component is built and asked; otherwise only its declaration is read.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Check:
     capability: str | None
     is_drawn: bool
     drawn: tuple[str, ...]
+    asks: bool = True
 
 
 @dataclass(frozen=True)

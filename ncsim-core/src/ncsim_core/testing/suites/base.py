@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 from typing_extensions import override
 
+from ncsim_core.errors import NcsimError
 from ncsim_core.registry import Registry, get_registry
-from ncsim_core.testing.checking import PREFIX, REFUSALS, check, result_of
+from ncsim_core.testing.checking import PREFIX, REFUSALS, check, described, result_of
 from ncsim_core.testing.child import answers_in_new_process
 from ncsim_core.testing.option_strategies import options_for
 from ncsim_core.testing.questions import Answer, Case, fixed_cases
@@ -20,6 +21,13 @@ from ncsim_core.testing.strategies import runs
 from ncsim_core.testing.subject import Subject, default_sections
 from ncsim_core.testing.suites.declaration import DeclarationChecks
 from ncsim_core.testing.suites.runs import RunChecks
+from ncsim_core.testing.telling import example_text
+
+DRAW = "draw from context.rng('a name of yours') instead"
+STEADY = (
+    "keep nothing from one question to the next, look at no clock, and take "
+    "context.rng('a name of yours') anew where you draw"
+)
 
 
 class ComponentSuite(RunChecks, DeclarationChecks):
@@ -45,6 +53,7 @@ class ComponentSuite(RunChecks, DeclarationChecks):
     expected_failures: ClassVar[Mapping[str, str]] = {}
 
     registry: Registry | None = None
+    _standstill: ClassVar[str | None] = None
 
     @override
     def __init_subclass__(cls) -> None:
@@ -88,6 +97,16 @@ class ComponentSuite(RunChecks, DeclarationChecks):
         registered = registry.find(self.kind, self.component)
         return Subject(registry, registered, self.options or {}, sections)
 
+    def standstill(self) -> str | None:
+        """Return why it cannot be built or asked one ordinary question, found out once per class.
+
+        Each check would fail for that reason; it is said once, not in as many ways.
+        """
+        cls = type(self)
+        if "_standstill" not in vars(cls):
+            cls._standstill = _standstill_of(self, self.subject())
+        return cls._standstill
+
     def option_values(self, subject: Subject) -> SearchStrategy[Mapping[str, object]]:
         """Return the options to draw."""
         if self.options is not None:
@@ -118,12 +137,16 @@ class ComponentSuite(RunChecks, DeclarationChecks):
         """The answer is the same when asked again, after another question, and built anew."""
         answer = self.fresh_answer(subject, case)
         self.fresh_answer(subject, other)
-        assert self.fresh_answer(subject, case) == answer, "built anew, it answers otherwise"
+        anew = self.fresh_answer(subject, case)
+        assert anew == answer, f"built anew, it answers otherwise: {answer}, then {anew}; {STEADY}"
         if self.kind == "queue_model":
             return
         component = subject.build(case)
         subject.ask(component, case)
-        assert subject.ask(component, case) == answer, "asked again, it answers otherwise"
+        again = subject.ask(component, case)
+        assert again == answer, (
+            f"asked again, it answers otherwise: {answer}, then {again}; {STEADY}"
+        )
 
     @check()
     def check_global_generators_stay_untouched(self, subject: Subject, case: Case) -> None:
@@ -132,9 +155,9 @@ class ComponentSuite(RunChecks, DeclarationChecks):
 
         before, numpy_before = random.getstate(), pickle.dumps(np.random.get_state())
         self.fresh_answer(subject, case)
-        assert random.getstate() == before, "the global generator of random was used"
+        assert random.getstate() == before, f"the global generator of random was used; {DRAW}"
         numpy_after = pickle.dumps(np.random.get_state())
-        assert numpy_after == numpy_before, "the global generator of numpy was used"
+        assert numpy_after == numpy_before, f"the global generator of numpy was used; {DRAW}"
 
     @check()
     def check_arguments_stay_unchanged(self, subject: Subject, case: Case) -> None:
@@ -148,7 +171,8 @@ class ComponentSuite(RunChecks, DeclarationChecks):
         """It can be sent to another process."""
         component = subject.build(case)
         copy = pickle.loads(pickle.dumps(component))
-        assert subject.ask(copy, case) == subject.ask(component, case), "the copy differs"
+        ours, its = subject.ask(component, case), subject.ask(copy, case)
+        assert its == ours, f"its pickled copy answers {its} instead of {ours}"
 
     @check(is_drawn=False)
     def check_hash_seed_changes_nothing(self, subject: Subject) -> None:
@@ -161,7 +185,10 @@ class ComponentSuite(RunChecks, DeclarationChecks):
         ]
         assert cases, "it refuses all ordinary questions"
         here = [self.fresh_answer(subject, case) for case in cases]
-        assert answers_in_new_process(subject, cases) == here, "the hash seed decides"
+        there = answers_in_new_process(subject, cases)
+        assert there == here, (
+            "the hash seed decides: an answer follows the order of a set, or hash(); sort first"
+        )
 
     def fresh_answer(self, subject: Subject, case: Case) -> Answer:
         """Return the answer of a component built for this question alone."""
@@ -186,6 +213,23 @@ def _test_of(one: Check) -> Callable[[ComponentSuite], None]:
     test.__name__ = f"test_{one.name}"
     test.__doc__ = one.body.__doc__
     return test
+
+
+def _standstill_of(suite: ComponentSuite, subject: Subject) -> str | None:
+    for each in suite.ordinary_cases(subject)[:1]:
+        try:
+            case = subject.settle(each)
+            component = subject.build(case)
+            if suite.kind != "dag_source":  # whose answer may have no end
+                subject.ask(component, case)
+        except REFUSALS:
+            return None
+        except (Exception, SystemExit) as error:
+            if isinstance(error, NcsimError):
+                return f"it answers nothing: {error}"
+            asked = example_text(subject.options, {}, {"asked about": each})
+            return f"it answers nothing: {described(error)}\n{asked}"
+    return None
 
 
 def _is_refused(suite: ComponentSuite, subject: Subject, case: Case) -> bool:

@@ -4,7 +4,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import cast
 
-from ncsim_core.registry.building import load_object
+from ncsim_core.registry.building import imported
 from ncsim_core.registry.option_schemas import properties_of, schema_fault
 from ncsim_core.testing.builders import line, make_context
 from ncsim_core.testing.checking import check
@@ -14,7 +14,7 @@ from ncsim_core.testing.subject import Subject
 class DeclarationChecks:
     """Checks that what is declared is what is there."""
 
-    @check(is_drawn=False)
+    @check(is_drawn=False, asks=False)
     def check_schema_is_portable(self, subject: Subject) -> None:
         """The options schema is valid draft-07 in the portable subset, all of it described."""
         from jsonschema import Draft7Validator
@@ -26,7 +26,7 @@ class DeclarationChecks:
         bare = _undescribed(schema)
         assert not bare, f"options without a description: {bare}"
 
-    @check(is_drawn=False)
+    @check(is_drawn=False, asks=False)
     def check_defaults_are_the_factorys(self, subject: Subject) -> None:
         """Every option that may be left out has a valid default, equal to the factory's."""
         from jsonschema import Draft7Validator
@@ -45,7 +45,7 @@ class DeclarationChecks:
                     f"the factory {parameter.default!r}"
                 )
 
-    @check(is_drawn=False)
+    @check(is_drawn=False, asks=False)
     def check_factory_takes_every_option(self, subject: Subject) -> None:
         """The factory accepts the context, its params and every option by name."""
         options = dict.fromkeys(properties_of(subject.registered.schema))
@@ -53,11 +53,18 @@ class DeclarationChecks:
         both = sorted(options.keys() & params.keys())
         assert not both, f"options that are params as well: {both}"
         context = make_context(line(2))
-        inspect.signature(_factory(subject)).bind(context, **params, **options)
+        try:
+            inspect.signature(_factory(subject)).bind(context, **params, **options)
+        except TypeError as error:
+            raise AssertionError(
+                f"{subject.component.factory} must take a context and, by name, the declared "
+                f"options ({', '.join(options) or 'none'}) and params "
+                f"({', '.join(params) or 'none'}): {error}"
+            ) from None
 
 
 def _factory(subject: Subject) -> Callable[..., object]:
-    return cast("Callable[..., object]", load_object(subject.component.factory))
+    return imported(subject.registered, subject.identity)
 
 
 def _undescribed(schema: Mapping[str, object], where: str = "") -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import cast
 
+import numpy as np
 from hypothesis.strategies import SearchStrategy
 from typing_extensions import override
 
@@ -44,17 +45,21 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
     @check()
     def check_factors_are_shares(self, subject: Subject, case: Case) -> None:
         """There is one factor per link asked for, in [0, 1]."""
-        factors = _model(subject, case).factors(case.active, case.active)
-        assert factors.shape == (len(case.active),), f"shape {factors.shape}"
+        factors: object = _model(subject, case).factors(case.active, case.active)
+        assert isinstance(factors, np.ndarray), f"factors() gave {factors!r}, not an array of numpy"
+        count = len(case.active)
+        assert factors.shape == (count,), f"shape {factors.shape}; {count} links were asked about"
         for link, factor in zip(case.active, factors.tolist(), strict=True):
-            assert 0.0 <= factor <= 1.0, f"link {link} has factor {factor!r}"  # false for nan too
+            is_share = isinstance(factor, int | float) and 0.0 <= factor <= 1.0  # nan is none
+            assert is_share, f"link {link} has factor {factor!r}, not a number from 0 to 1"
 
     @check()
     def check_alone_a_link_keeps_its_bandwidth(self, subject: Subject, case: Case) -> None:
         """The factor of a link that is alone is 1."""
         model = _model(subject, case)
         for link in range(len(case.network.links)):
-            assert _factors(model, [link], [link]) == [1.0], f"link {link}"
+            factors = _factors(model, [link], [link])
+            assert factors == [1.0], f"alone, link {link} has factor {factors}, not 1"
 
     @check()
     def check_order_of_links_changes_nothing(self, subject: Subject, case: Case) -> None:
@@ -62,15 +67,20 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
         model = _model(subject, case)
         backwards = case.active[::-1]
         expected = _factors(model, case.active, case.active)
-        assert _factors(model, case.active, backwards) == expected
-        assert _factors(model, backwards, set(case.active)) == expected[::-1]
+        for links, active, wanted in (
+            (case.active, backwards, expected),
+            (backwards, set(case.active), expected[::-1]),
+        ):
+            got = _factors(model, links, active)
+            assert got == wanted, f"{got} instead of {wanted} with active links as {active}"
 
     @check()
     def check_asking_for_fewer_changes_nothing(self, subject: Subject, case: Case) -> None:
         """A link has the same factor whether asked for alone or with others."""
         model = _model(subject, case)
         together = _factors(model, case.active, case.active)
-        assert [_factors(model, [link], case.active)[0] for link in case.active] == together
+        apart = [_factors(model, [link], case.active)[0] for link in case.active]
+        assert apart == together, f"asked about one by one {apart}, about all {together}"
 
     @check()
     def check_reach_holds_what_changed(self, subject: Subject, case: Case) -> None:
@@ -87,7 +97,11 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
             rest = [link for link in case.active if link != switched]
             far = [link for link in rest if link not in set(model.reach([switched]))]
             without = _factors(model, far, rest)
-            assert _factors(model, far, [*rest, switched]) == without, f"links {far}, {switched}"
+            with_it = _factors(model, far, [*rest, switched])
+            assert with_it == without, (
+                f"reach([{switched}]) leaves out some of {far}, whose factors go from "
+                f"{without} to {with_it} when link {switched} is switched on"
+            )
 
     @check()
     def check_session_equals_global_refresh(self, subject: Subject, case: Case) -> None:
@@ -115,7 +129,9 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
         To the microsecond; which rates are looked at again differs, so those are left out.
         """
         local, slow = (run_with(subject, run, reach, "coarse") for reach in Reach)
-        assert local == slow
+        assert local == slow, (
+            "asking only about links in reach() gives another run: it is too small"
+        )
 
     @check()
     def check_sessions_do_not_meet(self, subject: Subject, case: Case) -> None:
@@ -125,15 +141,17 @@ class InterferenceModelSuite(RouteRateChecks, ComponentSuite):
         alone = _Followed(model.open_session())
         steps = list(_switches(case))
         ends = [alone.update(on, off) for on, off in steps]
-        assert [first.update(*steps[0]) for _ in steps[:1]] == ends[:1]
-        assert [second.update(on, off) for on, off in steps] == ends
-        assert [first.update(on, off) for on, off in steps[1:]] == ends[1:]
+        met = "a session's answers depend on another session of the same model"
+        assert [first.update(*steps[0]) for _ in steps[:1]] == ends[:1], met
+        assert [second.update(on, off) for on, off in steps] == ends, met
+        assert [first.update(on, off) for on, off in steps[1:]] == ends[1:], met
 
     @check()
     def check_competition_can_be_explained(self, subject: Subject, case: Case) -> None:
         """Each link has counts of 0 or more and a hidden factor in [0, 1]."""
         told = _model(subject, case).competition(case.active, case.active)
-        assert len(told) == len(case.active)
+        count = len(case.active)
+        assert len(told) == count, f"competition() gave {len(told)} answers for {count} links"
         for each in told:
             assert each.contenders >= 0, each
             assert each.hidden_interferers >= 0, each
@@ -157,7 +175,10 @@ def _follow(session: InterferenceSession, model: InterferenceModel, case: Case) 
     fast, slow = _Followed(session), _Followed(PlainSession(model, is_global=True))
     for on, off in _switches(case):
         expected = slow.update(on, off)
-        assert fast.update(on, off) == expected, f"{type(session).__name__}: {on} on, {off} off"
+        got = fast.update(on, off)
+        assert got == expected, (
+            f"{type(session).__name__}: {got} instead of {expected} after {on} on, {off} off"
+        )
         links = sorted(expected)
         told = list(session.competition(links))
         assert told == list(model.competition(links, links)), f"competition of {links}"

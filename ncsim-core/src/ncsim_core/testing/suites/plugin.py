@@ -54,8 +54,8 @@ def loads(registry: Registry, distribution: str) -> None:
 
 def declaration_stays_light(registry: Registry, distribution: str) -> None:
     """Importing the declaration module imports none of the big libraries."""
-    del registry
-    for module in _declaration_modules(distribution):
+    broken = any(each.is_broken for each in registry.plugins if each.distribution == distribution)
+    for module in () if broken else _declaration_modules(distribution):  # loads() says why
         code = f"import sys, {module}; print([m for m in {HEAVY} if m in sys.modules])"
         done = run_python(["-c", code], b"", {})
         assert done.returncode == 0, done.stderr.decode()[-2000:]

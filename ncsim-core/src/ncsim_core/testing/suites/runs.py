@@ -26,7 +26,8 @@ class RunChecks:
     @check()
     def check_equal_runs_leave_equal_traces(self, subject: Subject, run: Case) -> None:
         """The same scenario leaves the same trace, byte for byte."""
-        assert run_with(subject, run) == run_with(subject, run)
+        first, second = run_with(subject, run), run_with(subject, run)
+        assert first == second, "two runs of one scenario leave different traces"
 
 
 def _run_that_is_covered(subject: Subject, case: Case) -> Traced:
