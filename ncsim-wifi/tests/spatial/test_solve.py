@@ -136,7 +136,8 @@ def test_an_rts_that_is_captured_does_not_mind_a_later_start():
     def fatal_us(receiver_m):
         scene = scene_of(plant([(0, 0), (95, 0)], [receiver_m, (110, 0)], rts_cts=True), range(2))
         statics = statics_of(scene)
-        return dict(zip(statics.hostile.link.tolist(), statics.noticed_us.tolist(), strict=True))
+        noticed_us = statics.handshakes.noticed_us.tolist()
+        return dict(zip(statics.hostile.link.tolist(), noticed_us, strict=True))
 
     assert fatal_us((30.0, 0.0))[0] == 0.0
     assert fatal_us((50.0, 0.0))[0] > 0.0

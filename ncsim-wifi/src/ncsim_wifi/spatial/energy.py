@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
-from ncsim_wifi.spatial.relations import Hostile, subsets_of
+from ncsim_wifi.spatial.relations import Hostile, impossible_subsets, subsets_of
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.sums import halved, halving_sums
 
@@ -45,7 +45,7 @@ def energy_sets(scene: Scene) -> EnergySets:
     np.fill_diagonal(is_hidden, val=False)
     power_mW = np.where(is_hidden, scene.at_station_mW.T, 0.0)  # at u in row u
     member = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
-    member_mW = np.take_along_axis(power_mW, member, axis=1)
+    member_mW = power_mW[np.arange(len(power_mW))[:, None], member]
     threshold_mW = mW_from_dBm(scene.settings.sensing_dBm)
     station = np.flatnonzero(member_mW.sum(axis=1) >= threshold_mW)
     if not scene.settings.terms.energy_sensing:
@@ -53,9 +53,6 @@ def energy_sets(scene: Scene) -> EnergySets:
     member, member_mW = member[station], member_mW[station]
     size = member.shape[1]
     subsets = subsets_of(size)
-    together = scene.senses[member[:, :, None], member[:, None, :]]
-    clashes = np.einsum("rij,si,sj->rs", together.astype(np.float64), subsets, subsets) > 0
-    lacks = (member_mW == 0.0).astype(np.float64) @ subsets.T > 0
     row_of = np.full(scene.station_count, -1)
     row_of[station] = np.arange(len(station))
     return EnergySets(
@@ -63,51 +60,52 @@ def energy_sets(scene: Scene) -> EnergySets:
         row_of,
         np.where(member_mW > 0.0, member, -1),
         subsets,
-        ~(clashes | lacks),
+        ~impossible_subsets(member, member_mW == 0.0, scene.senses),
         member_mW @ subsets.T >= threshold_mW,
     )
 
 
 class GateMasks(NamedTuple):
-    """The subsets that a gate compares, by relation it concerns.
+    """The subsets that gates compare: at the sender of each relation, then at the interferer.
 
     Args:
-        relation: The relations.
+        gate: Number of the gate; those left out are open.
         row: The energy set of the station that is silenced.
         subsets: Whether it is one with the other party of the relation, and without other
             hostile stations, that leaves the channel free; one of all these; one to compare with
-            that leaves it free; one of all these; shape (relations, subsets, 4).
+            that leaves it free; one of all these; shape (gates, subsets, 4).
     """
 
-    relation: IntArray
+    gate: IntArray
     row: IntArray
     subsets: BoolArray
 
 
-def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile, *, before: bool) -> GateMasks:
-    """Return what the gates compare: at the sender (before) or at the interferer."""
-    own = scene.station[hostile.link]
-    silenced, other = (own, hostile.station) if before else (hostile.station, own)
+def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile) -> GateMasks:
+    """Return what the gates compare."""
+    own, station = scene.station[hostile.link], hostile.station
+    silenced, other = np.concatenate([own, station]), np.concatenate([station, own])
     row = sets.row_of[silenced]
-    relation = (
+    gate = (
         np.flatnonzero((row >= 0) & (sets.member[row] == other[:, None]).any(axis=1))
         if len(sets.station)
         else np.zeros(0, np.int64)
     )
-    member = sets.member[row[relation]]
+    relation = gate % max(1, len(hostile))
+    member = sets.member[row[gate]]
     is_hostile = np.zeros((len(scene.links), scene.station_count), np.bool_)
     is_hostile[hostile.link, hostile.station] = True
     is_rival = is_hostile[hostile.link[relation][:, None], member] & (member >= 0)
     is_rival &= member != hostile.station[relation][:, None]
     held = sets.subsets.T.astype(np.float64)
-    it = (member == other[relation][:, None]).astype(np.float64) @ held > 0.0
+    it = (member == other[gate][:, None]).astype(np.float64) @ held > 0.0
     rid_of_others = is_rival.astype(np.float64) @ held == 0.0
-    free = ~sets.blocks[row[relation]]
+    free = ~sets.blocks[row[gate]]
     with_it, without = it & rid_of_others, ~it & rid_of_others
     masks = np.empty((*free.shape, KINDS), np.bool_)
     for kind, mask in enumerate((with_it & free, with_it, without & free, without)):
         masks[:, :, kind] = mask
-    return GateMasks(relation, row[relation], masks)
+    return GateMasks(gate, row[gate], masks)
 
 
 class Silencing(NamedTuple):
@@ -116,15 +114,13 @@ class Silencing(NamedTuple):
     Args:
         feasible: 1 where a subset can be on the air together, shape (rows, subsets).
         blocks: 1 where it silences the station.
-        before: Subsets for the gates at the sender.
-        during: Subsets for the gates at the interferer.
+        gates: Subsets for the gates.
         relation_count: Number of relations.
     """
 
     feasible: FloatArray
     blocks: FloatArray
-    before: GateMasks
-    during: GateMasks
+    gates: GateMasks
     relation_count: int
 
 
@@ -147,8 +143,7 @@ def silencing_of(scene: Scene, sets: EnergySets, hostile: Hostile) -> Silencing:
     return Silencing(
         sets.feasible.astype(np.float64),
         sets.blocks.astype(np.float64),
-        gate_masks(scene, sets, hostile, before=True),
-        gate_masks(scene, sets, hostile, before=False),
+        gate_masks(scene, sets, hostile),
         len(hostile),
     )
 
@@ -169,21 +164,21 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     weight = weight * tables.feasible
     blocking, every = halving_sums(np.stack([weight * tables.blocks, weight]))
     blocked = blocking / every
-    gates = (gate(weight, masks, tables.relation_count) for masks in (tables.before, tables.during))
-    return Silenced(blocked, *gates)
+    gates = open_gates(weight, tables.gates, 2 * tables.relation_count)
+    return Silenced(blocked, *np.split(gates, 2))
 
 
-def gate(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
-    """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation.
+def open_gates(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
+    """Return P(not silenced | with it) / P(not silenced | without), at most 1, by gate.
 
     Source: MODEL 3.6.
     """
     result = np.ones(count)
-    if not len(masks.relation):
+    if not len(masks.gate):
         return result
     weight = weights[masks.row]
     terms = (masks.subsets * weight[:, :, None]).reshape(len(weight), KINDS * weight.shape[1])
     sums = halved(terms, KINDS).T
     with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
-    result[masks.relation] = np.minimum(1.0, with_it / np.maximum(without, TINY))
+    result[masks.gate] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

@@ -181,10 +181,47 @@ def unaware_survival(
     return np.asarray(survives * (1.0 - own_lost))
 
 
+class Handshakes(NamedTuple):
+    """What RTS and CTS change in a scene.
+
+    Args:
+        noticed_us: Until when a start of the interferer is fatal to an RTS, shape (relations,).
+        by_cts: Whether a relation is one of stations kept apart by CTS only.
+        by_cts_survives: What handshakes of these survive, by stage of the other.
+        by_cts_missed: How often neither meets the other at all.
+        silenced: Whose CTS silence whom, shape (links, stations).
+        unread: Who may begin unawares.
+    """
+
+    noticed_us: FloatArray
+    by_cts: BoolArray
+    by_cts_survives: FloatArray
+    by_cts_missed: FloatArray
+    silenced: FloatArray
+    unread: Unread
+
+
+def handshakes_of(scene: Scene, hostile: Hostile, rts_ratio_dB: float) -> Handshakes:
+    """Return what RTS and CTS change.
+
+    Args:
+        scene: The active links.
+        hostile: Hidden relations.
+        rts_ratio_dB: Ratio above which control frames survive a collision.
+    """
+    fate = fate_of(scene, hostile, hostile.delta[:, 0], rts_ratio_dB)
+    return Handshakes(
+        np.where(fate.captures, 0.0, CTS_NOTICED_us),
+        scene.silenced_by_cts[scene.station[hostile.link], hostile.station],
+        unmet(fatal_slots(fate, scene.data_us[hostile.link])),
+        unmet(np.full((len(hostile), 1), SLOTS_MET)),
+        silenced_share(scene),
+        unread_of(scene, rts_ratio_dB),
+    )
+
+
 def silenced_share(scene: Scene) -> FloatArray:
     """Return which links' CTS silence whom though their sender does not, (links, stations)."""
     own = scene.station
-    if not scene.settings.rts_cts:
-        return np.zeros((len(own), scene.station_count))
     apart = ~scene.senses[own] & (np.arange(scene.station_count)[None, :] != own[:, None])
     return np.asarray(apart & scene.hears_receiver, np.float64)

@@ -61,6 +61,16 @@ def hazard_grid() -> FloatArray:
 def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
     """Return h of whole payloads received at a constant ratio.
 
+    Args:
+        scheme: Row of the table; broadcasts against ``ratio_dB``.
+        ratio_dB: Signal to interference and noise.
+    """
+    return exp(ln_hazard(scheme, ratio_dB))
+
+
+def ln_hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
+    """Return the logarithm of the hazard.
+
     The curves are read from a grid of 0.01 dB, on which all points of Table A lie.
 
     Source: MODEL 1, frame loss.
@@ -74,6 +84,6 @@ def hazard(scheme: IntArray, ratio_dB: FloatArray) -> FloatArray:
     below = at.astype(np.int64)
     grid = hazard_grid()
     place = scheme * grid.shape[1] + below
-    ln_hazard = grid.take(place)
-    ln_hazard += (at - below) * (grid.take(place + 1) - ln_hazard)
-    return exp(ln_hazard)
+    result = grid.take(place)
+    result += (at - below) * (grid.take(place + 1) - result)
+    return np.asarray(result)

@@ -49,7 +49,9 @@ class JointStages:
         own = scene.station[hostile.link]
         hurts = np.zeros((scene.station_count, scene.station_count), np.bool_)
         hurts[own, hostile.station] = scene.settings.terms.joint_chains
-        one, two = np.nonzero(np.triu(hurts & hurts.T))
+        one, two = np.nonzero(hurts & hurts.T)
+        is_first = one < two
+        one, two = one[is_first], two[is_first]
         self.count = len(one)
         side_of = np.full(hurts.shape, -1)
         side_of[one, two] = np.arange(self.count)

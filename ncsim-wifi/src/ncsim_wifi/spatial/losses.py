@@ -181,7 +181,7 @@ def hidden_loss(
     met = _interferers(scene, statics, traffic, kill, state)
     lethal = logs[2:] / (2.0 * logs[0])
     windows = _windows(scene, statics, lethal, immune, gates)
-    survives, missed, answered = _fates(scene, statics, survival(met, windows))
+    survives, missed, answered = _fates(statics, survival(met, windows))
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / row_sums(time)[:, None]
@@ -227,23 +227,22 @@ def _windows(
     hostile = statics.hostile
     protected_us = scene.protected_us[hostile.link]
     left_us, borne_us = windows_of(statics.window_us, protected_us, lethal)
-    if scene.settings.rts_cts:
-        left_us = np.concatenate([left_us, statics.noticed_us[None]])
+    if statics.handshakes is not None:
+        left_us = np.concatenate([left_us, statics.handshakes.noticed_us[None]])
     return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, statics.longest_us)
 
 
-def _fates(
-    scene: Scene, statics: Statics, found: Survival
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _fates(statics: Statics, found: Survival) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return s_k and nohit_k of each relation, and what part of RTS are answered."""
-    if not scene.settings.rts_cts:
+    handshakes = statics.handshakes
+    if handshakes is None:
         return found.survives, found.missed, np.ones_like(found.survives)
-    by_cts = statics.by_cts[:, None]
+    by_cts = handshakes.by_cts[:, None]
     answered = np.where(statics.hostile.is_strong[:, None], found.found_free, 1.0)
     return (
-        np.where(by_cts, statics.by_cts_survives, found.survives),
-        np.where(by_cts, statics.by_cts_missed, found.missed),
-        np.where(by_cts, statics.by_cts_survives, answered),
+        np.where(by_cts, handshakes.by_cts_survives, found.survives),
+        np.where(by_cts, handshakes.by_cts_missed, found.missed),
+        np.where(by_cts, handshakes.by_cts_survives, answered),
     )
 
 

@@ -41,6 +41,10 @@ class Others(NamedTuple):
     link_of_group: IntArray
 
 
+NOTHING = np.zeros(0, np.int64)
+NO_OTHERS = Others(NOTHING, NOTHING, NOTHING, np.zeros(0), NOTHING)
+
+
 @dataclass(frozen=True)
 class Near:
     """The strongest hidden stations of each link, strongest first, and the noise of the rest.
@@ -82,22 +86,25 @@ def near_interferers(scene: Scene, is_hidden: BoolArray) -> Near:
     """
     settings = scene.settings
     count = settings.approximations.near_count
+    links = len(scene.links)
+    rows = np.arange(links)[:, None]
     power_mW = np.where(is_hidden, scene.at_receiver_mW, 0.0).T
     order = np.argsort(-power_mW, axis=1, kind="stable")[:, :count]
-    near_mW = np.take_along_axis(power_mW, order, axis=1)
+    near_mW = power_mW[rows, order]
     far_mW = power_mW.copy()
-    np.put_along_axis(far_mW, order, 0.0, axis=1)
-    harm = _harm(scene, far_mW)
-    far_mW[harm > 0.0] = 0.0
-    noise_mW = np.full(len(scene.links), scene.plant.noise_mW)
-    if not settings.terms.far_noise:
-        far_mW[:] = 0.0
-    else:
-        noise_mW += far_mW @ far_activity(scene.degree)
-    if not settings.terms.hidden_loss:
-        harm[:] = 0.0
-    near_station = np.where(near_mW > 0.0, order, NOBODY)
-    return Near(near_station, near_mW, noise_mW, far_mW, _others(scene, harm))
+    far_mW[rows, order] = 0.0
+    noise_mW = np.full(links, scene.plant.noise_mW)
+    others = NO_OTHERS
+    if far_mW.any():
+        harm = _harm(scene, far_mW)
+        far_mW[harm > 0.0] = 0.0
+        if settings.terms.far_noise:
+            noise_mW += far_mW @ far_activity(scene.degree)
+        else:
+            far_mW[:] = 0.0
+        if settings.terms.hidden_loss:
+            others = _others(scene, harm)
+    return Near(np.where(near_mW > 0.0, order, NOBODY), near_mW, noise_mW, far_mW, others)
 
 
 def _others(scene: Scene, harm: FloatArray) -> Others:
@@ -162,21 +169,19 @@ def grouped(
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Return link, place and group of the kept relations: each group excludes itself on air."""
     rows, columns = np.nonzero(kept)
+    heard = [int.from_bytes(row, "little") for row in np.packbits(senses, 1, "little")]
+    cliques: dict[int, list[tuple[int, list[int]]]] = {}  # by link: stations as bits, places above
     stations = station[rows, columns].tolist()
-    heard: list[set[int]] = [set() for _ in senses]
-    for one, other in zip(*(ends.tolist() for ends in np.nonzero(senses)), strict=True):
-        heard[one].add(other)
-    cliques: dict[int, list[tuple[set[int], list[int]]]] = {}  # by link: stations, places above
     for at, (link, each) in enumerate(zip(rows.tolist(), stations, strict=True)):
         of_link = cliques.setdefault(link, [])
-        near = heard[each]
-        for members, places in of_link:
-            if near.issuperset(members):
-                members.add(each)
+        unheard = ~heard[each]
+        for number, (members, places) in enumerate(of_link):
+            if not members & unheard:
                 places.append(at)
+                of_link[number] = members | 1 << each, places
                 break
         else:
-            of_link.append(({each}, [at]))
+            of_link.append((1 << each, [at]))
     in_order = [places for of_link in cliques.values() for _, places in of_link]
     order = np.array([at for clique in in_order for at in clique], np.int64)
     group = np.repeat(np.arange(len(in_order)), [len(clique) for clique in in_order])

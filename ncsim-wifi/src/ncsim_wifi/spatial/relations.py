@@ -115,25 +115,21 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     locks = near.power_mW >= 10.0 ** (settings.preamble_dBm / 10.0)
     is_strong, by_cts_only = _strong(scene, near, locks)
     helper = _helpers(scene, near, is_strong)
-    sets = subsets_of(settings.approximations.helper_count)
-    delta, omega = _increments(scene, near, helper, sets)
+    delta, omega, partner, partner_kill = _increments(scene, near, helper)
     worst = np.where(omega > 0.0, delta, 0.0).max(axis=2)
-    partner, partner_kill = _partners(scene, near)
     kept = somebody & (is_strong | (-np.expm1(-worst) >= settings.approximations.min_kill))
     kept &= scene.is_alive[:, None]
     if not settings.terms.hidden_loss:
         kept[:] = False
     link, place, group = grouped(kept, near.station, scene.senses)
-    helper_station = np.where(
-        helper == NOBODY, NOBODY, np.take_along_axis(near.station[:, None, :], helper, axis=2)
-    )
+    helper_station = near.station[link[:, None], helper[link, place]]
     return Hostile(
         link,
         near.station[link, place],
         is_strong[link, place],
         delta[link, place],
         omega[link, place],
-        helper_station[link, place],
+        np.where(helper[link, place] == NOBODY, NOBODY, helper_station),
         group,
         by_cts_only[link, place],
         locks[link, place],
@@ -150,14 +146,14 @@ def _strong(scene: Scene, near: Near, locks: BoolArray) -> tuple[BoolArray, Bool
     ratio_dB = scene.ratio_dB(near.power_mW + near.noise_mW[:, None], rows)
     least_dB = RTS_RATIO_dB if settings.rts_cts else settings.preamble_ratio_dB
     is_strong = somebody & (locks | (ratio_dB < least_dB))
+    if not settings.rts_cts:
+        return is_strong, np.zeros_like(is_strong)
     by_cts_only = somebody & ~is_strong & _cts_reaches(scene)[near.station, rows]
     return is_strong | by_cts_only, by_cts_only
 
 
 def _cts_reaches(scene: Scene) -> BoolArray:
     """Return which receivers hear the CTS that answer which stations, (stations, links)."""
-    if not scene.settings.rts_cts:
-        return np.zeros((scene.station_count, len(scene.links)), np.bool_)
     heard_mW = 10.0 ** (scene.settings.preamble_dBm / 10.0)
     heard = (scene.receiver_at_receiver_mW >= heard_mW).astype(np.float64)
     return np.asarray(scene.link_of_station.astype(np.float64) @ heard > 0.0)
@@ -169,56 +165,92 @@ def subsets_of(size: int) -> BoolArray:
     return np.array([[bool(held >> i & 1) for i in range(size)] for held in range(1 << size)])
 
 
+@cache
+def _impossible(size: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return what makes subsets of a few things impossible.
+
+    Returns:
+        The first and the second thing of each pair, and a table of 1 where a subset holds both
+        of a pair, and below where it holds a thing, shape (pairs + size, subsets).
+    """
+    held = subsets_of(size).T.astype(np.float64)
+    first, second = np.triu_indices(size, 1)
+    return first, second, np.concatenate([held[first] * held[second], held])
+
+
+def impossible_subsets(station: IntArray, lacks: BoolArray, senses: BoolArray) -> BoolArray:
+    """Return which subsets of a few stations cannot be on the air together.
+
+    Args:
+        station: The stations, shape (..., size); the last are lacking.
+        lacks: Which of them are not there.
+        senses: Who senses whom.
+
+    Returns:
+        Shape (..., subsets).
+    """
+    first, second, table = _impossible(station.shape[-1])
+    clashes = senses[station[..., first], station[..., second]]
+    return np.asarray(np.concatenate([clashes, lacks], axis=-1).astype(np.float64) @ table > 0.0)
+
+
 def _helpers(scene: Scene, near: Near, is_strong: BoolArray) -> IntArray:
     """Return Q_r as places among the near ones, shape (links, near, helpers) (MODEL 2)."""
-    size = near.station.shape[1]
+    links, size = near.station.shape
     able = (near.station != NOBODY) & ~is_strong
     able_before = able[:, None, :] & (np.arange(size)[None, :] < np.arange(size)[:, None])
     able_before &= ~scene.senses[near.station[:, :, None], near.station[:, None, :]]
     if not scene.settings.terms.joint_interference:
         able_before[:] = False
-    order = np.argsort(~able_before, axis=2, kind="stable")
-    order = order[:, :, : scene.settings.approximations.helper_count]
-    chosen = np.take_along_axis(able_before, order, axis=2)
-    short = scene.settings.approximations.helper_count - order.shape[2]
-    places = np.where(chosen, order, NOBODY)
-    return np.pad(places, ((0, 0), (0, 0), (0, short)), constant_values=NOBODY)
+    count = scene.settings.approximations.helper_count
+    order = np.argsort(~able_before, axis=2, kind="stable")[:, :, :count]
+    rows = np.arange(links)[:, None, None]
+    chosen = able_before[rows, np.arange(size)[:, None], order]
+    places = np.full((links, size, count), NOBODY)
+    places[:, :, :size] = np.where(chosen, order, NOBODY)
+    return places
 
 
 def _increments(
-    scene: Scene, near: Near, helper: IntArray, sets: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return Delta_r and omega_r for each set of helpers, shape (links, near, sets)."""
+    scene: Scene, near: Near, helper: IntArray
+) -> tuple[FloatArray, FloatArray, IntArray, FloatArray]:
+    """Return Delta_r and omega_r for each set of helpers, and who may collide with interferers.
+
+    Returns:
+        Both of shape (links, near, sets); stations that may begin together with the interferer,
+        and what both together add to its harm, shape (links, near, near).
+    """
     links = np.arange(len(scene.links))[:, None, None]
     there = helper != NOBODY
-    helper_mW = np.where(there, np.take_along_axis(near.power_mW[:, None, :], helper, axis=2), 0.0)
-    helper_station = np.take_along_axis(near.station[:, None, :], helper, axis=2)
-    together = scene.senses[helper_station[..., :, None], helper_station[..., None, :]]
-    together &= there[..., :, None] & there[..., None, :]
-    clashes = np.einsum("lnij,si,sj->lns", together, sets, sets) > 0
-    lacks = np.einsum("lni,si->lns", ~there, sets) > 0
-    set_mW = helper_mW @ sets.T + near.noise_mW[:, None, None]
-    before = hazard(scene.scheme[links], scene.ratio_dB(set_mW, links))
-    after = hazard(scene.scheme[links], scene.ratio_dB(set_mW + near.power_mW[..., None], links))
+    sets = subsets_of(helper.shape[2])
+    set_mW = np.where(there, near.power_mW[links, helper], 0.0) @ sets.T
+    set_mW += near.noise_mW[:, None, None]
+    with_it_mW = set_mW + near.power_mW[..., None]
+    both_mW = with_it_mW[..., :1] + near.power_mW[:, None, :]
+    every_mW = np.concatenate([set_mW, with_it_mW, both_mW], axis=2)
+    hazards = hazard(scene.scheme[links], scene.ratio_dB(every_mW, links))
+    before, after, both = np.split(hazards, [len(sets), 2 * len(sets)], axis=2)
     delta = np.minimum(after, MAX_JOINT_HAZARD) - np.minimum(before, MAX_JOINT_HAZARD)
     delta[..., 0] = after[..., 0] - before[..., 0]
-    omega = np.where(clashes | lacks, 0.0, np.exp(-SURVIVAL_DISCOUNT * before))
-    return np.maximum(delta, 0.0), omega
+    is_impossible = impossible_subsets(near.station[links, helper], ~there, scene.senses)
+    omega = np.where(is_impossible, 0.0, np.exp(-SURVIVAL_DISCOUNT * before))
+    added = np.exp(-after[..., :1] / 2.0) - np.exp(-both / 2.0)
+    return np.maximum(delta, 0.0), omega, *_partners(scene, near, added)
 
 
-def _partners(scene: Scene, near: Near) -> tuple[IntArray, FloatArray]:
-    """Return who may collide with each interferer, and what both together add to its harm."""
-    links = np.arange(len(scene.links))[:, None, None]
+def _partners(scene: Scene, near: Near, added: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return who may collide with each interferer, and what both together add to its harm.
+
+    Args:
+        scene: The active links.
+        near: The interferers.
+        added: What two of them would add.
+    """
     size = near.station.shape[1]
-    weaker = np.arange(size)[None, :] > np.arange(size)[:, None]
-    there = (near.station != NOBODY)[:, :, None] & (near.station != NOBODY)[:, None, :] & weaker
+    is_somebody = near.station != NOBODY
+    there = is_somebody[:, :, None] & is_somebody[:, None, :]
+    there &= np.arange(size)[None, :] > np.arange(size)[:, None]
     there &= scene.senses[near.station[:, :, None], near.station[:, None, :]]
     if not scene.settings.terms.joint_interference or scene.settings.rts_cts:
         there[:] = False  # RTS that collide are over before they harm data
-    alone_mW = near.power_mW[:, :, None] + near.noise_mW[:, None, None]
-    both_mW = alone_mW + near.power_mW[:, None, :]
-    scheme = scene.scheme[links]
-    alone, both = (hazard(scheme, scene.ratio_dB(mW, links)) for mW in (alone_mW, both_mW))
-    added = np.exp(-alone / 2.0) - np.exp(-both / 2.0)
-    station = np.broadcast_to(near.station[:, None, :], there.shape)
-    return np.where(there, station, NOBODY), np.where(there, added, 0.0)
+    return np.where(there, near.station[:, None, :], NOBODY), np.where(there, added, 0.0)

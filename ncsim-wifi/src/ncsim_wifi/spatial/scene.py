@@ -1,5 +1,6 @@
 """The active links and their stations, and what each receives of the others."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, dBm_from_mW
-from ncsim_wifi.spatial.hazard import hazard
+from ncsim_wifi.spatial.hazard import ln_hazard
 from ncsim_wifi.spatial.plant import Plant
 from ncsim_wifi.spatial.settings import Settings
 from ncsim_wifi.spatial.sums import sums_by
@@ -179,7 +180,7 @@ class Scene:
             return np.ones((len(self.links), self.station_count), np.bool_)
         power_dBm = self.plant.power_dBm[np.ix_(self.station_node, self.station_node)]
         ratio_dB = power_dBm[self.station] - self.settings.noise_dBm
-        return np.asarray(hazard(self.scheme[:, None], ratio_dB) < MAX_HAZARD_TO_DECODE)
+        return np.asarray(ln_hazard(self.scheme[:, None], ratio_dB) < MAX_LN_HAZARD_TO_DECODE)
 
     @cached_property
     def degree(self) -> FloatArray:
@@ -191,7 +192,7 @@ class Scene:
         return self.signal_dBm[links] - dBm_from_mW(interference_mW)
 
 
-MAX_HAZARD_TO_DECODE = 0.7  # half of the frames or more (MODEL 2)
+MAX_LN_HAZARD_TO_DECODE = math.log(0.7)  # half of the frames or more (MODEL 2)
 
 
 def scene_of(plant: Plant, links: Sequence[int]) -> Scene:

@@ -181,8 +181,7 @@ class FixedPoint:
         base = base_success(scene, spared, attempts.same_slot, statics.same_slot_loss)
         if len(statics.others.link):
             base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
-        if statics.unread is not None or statics.fields is not None:
-            base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
+        base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
         gates = self._gates(traffic)
         if len(statics.hostile):
             hidden = hidden_loss(scene, statics, traffic, gates, self._eager)
@@ -205,22 +204,23 @@ class FixedPoint:
             success = np.repeat(base[:, None], STAGES, axis=1)
         self._visit(success)
 
-    def _fields_survival(self, traffic: Traffic, attempts: Attempts) -> FloatArray:
+    def _fields_survival(self, traffic: Traffic, attempts: Attempts) -> FloatArray | float:
         """Return what stations that lost a signalling field leave of frames (an artefact)."""
         fields = self._statics.fields
         if fields is None:
-            return np.ones(len(self._scene.links))
+            return 1.0
         count = mean_count(self._stages)
         senders = Senders(
             traffic.rate_per_us, attempts.rate_per_us, traffic.times.on_air_us, count, self._clear
         )
         return field_survival(self._scene, fields, senders)
 
-    def _aware(self, traffic: Traffic) -> FloatArray:
+    def _aware(self, traffic: Traffic) -> FloatArray | float:
         """Return what stations that missed an RTS leave of frames, theirs and others'."""
-        scene, unread = self._scene, self._statics.unread
-        if unread is None:
-            return np.ones(len(scene.links))
+        scene, handshakes = self._scene, self._statics.handshakes
+        if handshakes is None:
+            return 1.0
+        unread = handshakes.unread
         starts = unaware_starts(unread, traffic.sending, self._clear, traffic.tau)
         return unaware_survival(
             scene, unread, starts, self._answered, self._attempts, traffic.rate_per_us
@@ -238,14 +238,15 @@ class FixedPoint:
     def _learn_handshake(self, traffic: Traffic, hidden: HiddenLoss) -> None:
         """Update which RTS are answered, and who is silenced by CTS of hidden receivers."""
         scene, statics = self._scene, self._statics
-        if not scene.settings.rts_cts:
+        handshakes = statics.handshakes
+        if handshakes is None:
             return
         gain = scene.settings.approximations.gain
         by_stage, _ = self._success(self._heard, hidden, hidden.answered, np.ones_like(hidden.hit))
         fresh = row_sums(self._link_stages * by_stage)
         self._answered = gain * fresh + (1.0 - gain) * self._answered
         after_cts_us = (scene.on_air_us - BEFORE_CTS_us + scene.overhead_us) * self._answered
-        silenced_us = statics.silenced * after_cts_us[:, None]
+        silenced_us = handshakes.silenced * after_cts_us[:, None]
         heard_us = scene.station_means(self._attempts, silenced_us)  # (w, u)
         on = np.clip(traffic.on * (heard_us / traffic.times.busy_us[:, None]).T, 0.0, LARGEST_ON)
         silenced = 1.0 - row_products(1.0 - on)
@@ -314,8 +315,9 @@ class FixedPoint:
                 kill = np.where(hostile.by_cts_only, self._statics.alone_kill, kill)
             spared[hostile.link, hostile.station] = 1.0 - kill
         sending = traffic.sending
-        if scene.settings.rts_cts:  # a CTS stops the sender too
-            part = (self._attempts * self._answered)[:, None] * self._statics.silenced
+        handshakes = self._statics.handshakes
+        if handshakes is not None:  # a CTS stops the sender too
+            part = (self._attempts * self._answered)[:, None] * handshakes.silenced
             sending = sending * (1.0 - sums_by(scene.station, part, scene.station_count)).T
         heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
         self._heard = heard

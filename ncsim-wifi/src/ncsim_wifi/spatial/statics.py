@@ -11,16 +11,7 @@ from ncsim_wifi.spatial.acks import AckRelations, ack_hazard, ack_relations, dea
 from ncsim_wifi.spatial.artefacts import LostFields, lost_fields
 from ncsim_wifi.spatial.collisions import same_slot_loss
 from ncsim_wifi.spatial.energy import EnergySets, Silencing, energy_sets, silencing_of
-from ncsim_wifi.spatial.handshake import (
-    SLOTS_MET,
-    CTS_NOTICED_us,
-    Unread,
-    fatal_slots,
-    fate_of,
-    silenced_share,
-    unmet,
-    unread_of,
-)
+from ncsim_wifi.spatial.handshake import CTS_NOTICED_us, Handshakes, handshakes_of
 from ncsim_wifi.spatial.near import Others, near_interferers
 from ncsim_wifi.spatial.occupancy import OccupancyModel, occupancy_of
 from ncsim_wifi.spatial.overlap import Helped, half_kill
@@ -64,14 +55,9 @@ class Statics:
         longest_us: The longest window that is asked about.
         alone_kill: Part of frames lost to the interferer of each relation alone.
         alone_half_kill: The part of half overlapped frames that it destroys.
-        noticed_us: Until when a start of the interferer is fatal to an RTS, shape (relations,).
         helped: The relations that may act together with others.
         helper_relation: Relations of the same link with these others, -1 where there is none.
-        by_cts: Whether a relation is one of stations kept apart by CTS only.
-        by_cts_survives: What handshakes of these survive, by stage of the other.
-        by_cts_missed: How often neither meets the other at all.
-        silenced: Whose CTS silence whom, shape (links, stations).
-        unread: Who may begin unawares, under RTS/CTS.
+        handshakes: What RTS and CTS change, if they are used.
         fields: Who may lose a signalling field, if that counts.
         stops_at_cts: Whether the sender defers from the interferer's CTS on.
         far_mW: Power of stations that only raise the noise, shape (links, stations).
@@ -97,14 +83,9 @@ class Statics:
     longest_us: float
     alone_kill: FloatArray
     alone_half_kill: FloatArray
-    noticed_us: FloatArray
     helped: Helped
     helper_relation: IntArray
-    by_cts: BoolArray
-    by_cts_survives: FloatArray
-    by_cts_missed: FloatArray
-    silenced: FloatArray
-    unread: Unread | None
+    handshakes: Handshakes | None
     fields: LostFields | None
     stops_at_cts: BoolArray
     far_mW: FloatArray
@@ -127,9 +108,8 @@ def statics_of(scene: Scene) -> Statics:
     hazards = ack_hazard(scene, near.noise_mW)
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
-    fate = fate_of(scene, hostile, alone, RTS_RATIO_dB)
-    noticed_us = np.where(fate.captures, 0.0, CTS_NOTICED_us)
-    window_us = _windows_us(scene, hostile, noticed_us)
+    handshakes = handshakes_of(scene, hostile, RTS_RATIO_dB) if scene.settings.rts_cts else None
+    window_us = _windows_us(scene, hostile, handshakes)
     return Statics(
         scene.senses.astype(np.float64),
         heard_of(scene),
@@ -141,14 +121,9 @@ def statics_of(scene: Scene) -> Statics:
         max(window_us.max(initial=0.0), CTS_NOTICED_us),
         -np.expm1(-alone),
         half_kill(alone),
-        noticed_us,
         _helped(scene, hostile),
         _helper_relation(scene, hostile),
-        scene.silenced_by_cts[own, hostile.station],
-        unmet(fatal_slots(fate, scene.data_us[hostile.link])),
-        unmet(np.full((len(hostile), 1), SLOTS_MET)),
-        silenced_share(scene),
-        unread_of(scene, RTS_RATIO_dB) if scene.settings.rts_cts else None,
+        handshakes,
         lost_fields(scene, near.noise_mW),
         _hears_cts_of(scene, own, hostile.station),
         near.far_mW,
@@ -208,18 +183,18 @@ def _helper_relation(scene: Scene, hostile: Hostile) -> IntArray:
     return np.where(helper >= 0, number[hostile.link[some][:, None], helper], -1)
 
 
-def _windows_us(scene: Scene, hostile: Hostile, noticed_us: FloatArray) -> FloatArray:
+def _windows_us(scene: Scene, hostile: Hostile, handshakes: Handshakes | None) -> FloatArray:
     """Return V_r (MODEL 2, and 3.8 for RTS/CTS)."""
     link = hostile.link
     window_us = np.where(hostile.is_strong, scene.data_us[link], scene.protected_us[link])
-    if not scene.settings.rts_cts:
+    if handshakes is None:
         return window_us
     hears_cts = scene.hears_receiver[link, hostile.station]
     whole_us = scene.on_air_us[link]
     window_us = np.where(hostile.is_strong, whole_us, window_us)
     burst_kill = -np.expm1(-hostile.delta[:, 0] * RTS_us / scene.protected_us[link])
     by_cts_only = hostile.by_cts_only & (burst_kill < LETHAL_BURST)
-    return np.where(hears_cts | by_cts_only, noticed_us, window_us)
+    return np.where(hears_cts | by_cts_only, handshakes.noticed_us, window_us)
 
 
 def _hears_cts_of(scene: Scene, own: IntArray, other: IntArray) -> BoolArray:

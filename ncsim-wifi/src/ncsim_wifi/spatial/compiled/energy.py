@@ -47,11 +47,9 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
     blocked = np.empty(len(on))
     for row in range(len(on)):
         blocked[row] = _fill_weights(tables, on, row, weight)
-    return Silenced(
-        blocked,
-        _gate(weight, tables.before, tables.relation_count),
-        _gate(weight, tables.during, tables.relation_count),
-    )
+    count = tables.relation_count
+    gates = _open_gates(weight, tables.gates, 2 * count)
+    return Silenced(blocked, gates[:count], gates[count:])
 
 
 @inlined
@@ -72,12 +70,12 @@ def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArra
 
 
 @inlined
-def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
-    """Return P(not silenced | with it) / P(not silenced | without), at most 1, by relation."""
+def _open_gates(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
+    """Return P(not silenced | with it) / P(not silenced | without), at most 1, by gate."""
     result = np.ones(count)
     half = weight.shape[1] // 2
     terms = np.empty(half * KINDS)
-    for at in range(len(masks.relation)):
+    for at in range(len(masks.gate)):
         subsets, row = masks.subsets[at], weight[masks.row[at]]
         for held in range(half):
             one, two = row[held], row[half + held]
@@ -92,5 +90,5 @@ def _gate(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
             width //= 2
         with_it = terms[0] / (terms[1] + TINY)
         without = terms[2] / (terms[3] + TINY)
-        result[masks.relation[at]] = min(1.0, with_it / max(without, TINY))
+        result[masks.gate[at]] = min(1.0, with_it / max(without, TINY))
     return result

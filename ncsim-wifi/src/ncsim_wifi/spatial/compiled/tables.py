@@ -170,10 +170,10 @@ def tables_of(scene: Scene, statics: Statics, joint: JointStages) -> Tables:
 
 def records(shape: int | tuple[int, ...], kind: Layout, **values: NDArray[np.generic]) -> Records:
     """Return records with some values, 0 elsewhere."""
-    made = np.zeros(shape, kind)
+    made = np.zeros(shape, np.dtype((np.record, kind)))
     for name, value in values.items():
         made[name] = value
-    return made.view(np.recarray)
+    return made
 
 
 def in_rows(values: NDArray[Any]) -> NDArray[Any]:
@@ -200,7 +200,7 @@ def _constants(scene: Scene, statics: Statics) -> Constants:
 
 
 def _air(scene: Scene, statics: Statics) -> Air:
-    others, acks, unread = statics.others, statics.acks, statics.unread
+    others, acks, handshakes = statics.others, statics.acks, statics.handshakes
     return Air(
         _links(scene),
         _meetings(scene, statics),
@@ -217,7 +217,7 @@ def _air(scene: Scene, statics: Statics) -> Air:
         ),
         others.link_of_group,
         records(len(acks.link), HARM, one=acks.link, two=acks.other, kill=acks.kill),
-        np.zeros((0, 0, 0), np.bool_) if unread is None else in_rows(unread.spoilt),
+        np.zeros((0, 0, 0), np.bool_) if handshakes is None else in_rows(handshakes.unread.spoilt),
         hazard_grid().reshape(-1),
     )
 
@@ -239,7 +239,7 @@ def _links(scene: Scene) -> Records:
 
 
 def _meetings(scene: Scene, statics: Statics) -> Records:
-    unread = statics.unread
+    handshakes = statics.handshakes
     meetings = records(
         (len(scene.links), scene.station_count),
         MEETING,
@@ -248,8 +248,9 @@ def _meetings(scene: Scene, statics: Statics) -> Records:
         deaf_to_ack=statics.deaf_to_ack,
         **statics.heard._asdict(),
     )
-    if unread is not None:
-        meetings["silenced"], meetings["exposed"] = statics.silenced, unread.exposed
+    if handshakes is not None:
+        unread = handshakes.unread
+        meetings["silenced"], meetings["exposed"] = handshakes.silenced, unread.exposed
         meetings["kill"], meetings["own_kill"] = unread.kill, unread.own_kill
     return meetings
 
@@ -277,8 +278,8 @@ def _hidden(statics: Statics, joint: JointStages) -> Hidden:
 
 
 def _relations(statics: Statics) -> Records:
-    hostile = statics.hostile
-    return records(
+    hostile, handshakes = statics.hostile, statics.handshakes
+    relations = records(
         len(hostile),
         RELATION,
         link=hostile.link,
@@ -289,16 +290,17 @@ def _relations(statics: Statics) -> Records:
         has_company=hostile.is_member_of_several,
         stops_at_cts=statics.stops_at_cts,
         locks=hostile.locks,
-        by_cts=statics.by_cts,
         by_cts_only=hostile.by_cts_only,
         alone_half_kill=statics.alone_half_kill,
         alone_kill=statics.alone_kill,
         window_us=statics.window_us,
-        noticed_us=statics.noticed_us,
         protection_ends=statics.protection_ends,
-        by_cts_survives=statics.by_cts_survives,
-        by_cts_missed=statics.by_cts_missed,
     )
+    if handshakes is not None:
+        relations["noticed_us"], relations["by_cts"] = handshakes.noticed_us, handshakes.by_cts
+        relations["by_cts_survives"] = handshakes.by_cts_survives
+        relations["by_cts_missed"] = handshakes.by_cts_missed
+    return relations
 
 
 def _helpers(statics: Statics) -> Helpers:
