@@ -39,6 +39,7 @@ VERBS: Final = {
     "new": Verb("ncsim_core.cli.new:new", "Write a small commented scenario to start from."),
     "explain": Verb("ncsim_core.cli.explain:explain", "Say where the time of a run went."),
     "compare": Verb("ncsim_core.cli.compare:compare", "Compare two runs, task by task."),
+    "reproduce": Verb("ncsim_core.cli.reproduce:reproduce", "Run a folder's scenario again."),
     "sweep": Verb("ncsim_core.cli.sweep:sweep", "Run all combinations of a sweep file."),
     "report": Verb("ncsim_core.cli.report:report", "Print a table of a study."),
     "plot": Verb("ncsim_core.cli.plot:plot", "Draw a figure of a study."),

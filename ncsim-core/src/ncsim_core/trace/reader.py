@@ -48,7 +48,7 @@ class TraceReader:
         self.path = path
         self.is_truncated = True
         self._line = 0
-        self._stream = _open_for_reading(path)
+        self._stream = opened(path)
         try:
             self.preamble = self._read_preamble()
         except BaseException:
@@ -160,7 +160,12 @@ class TraceReader:
         return preamble_of(entry, self.fault)
 
 
-def _open_for_reading(path: Path) -> BinaryIO:
+def opened(path: Path) -> BinaryIO:
+    """Return a trace as a stream of bytes, decompressed.
+
+    Raises:
+        TraceError: It cannot be read, or is compressed with zstd.
+    """
     try:
         raw = path.open("rb")
         magic = raw.read(4)

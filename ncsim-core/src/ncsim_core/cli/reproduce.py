@@ -1,0 +1,45 @@
+"""``ncsim reproduce``: does a folder that somebody sent hold what its scenario gives?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ncsim_core.cli.exit_codes import ExitCode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ncsim_core.cli.reproducing import Reproduction
+
+
+def reproduce(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="Output folder of a run.")],
+) -> None:
+    """Run the scenario of a run's folder again and compare traces, byte for byte, and metrics.
+
+    If they differ, it says where they part first, which packages are of another version, and
+    whether scenario or metrics were changed; it leaves with exit code 1.
+
+    Example: ncsim reproduce out/
+    """
+    from ncsim_core.cli.reproducing import reproduction_of
+
+    reproduction = reproduction_of(run)
+    for line in _lines(run, reproduction):
+        typer.echo(line)
+    if reproduction.faults:
+        raise typer.Exit(ExitCode.INVALID_INPUT)
+
+
+def _lines(run: Path, reproduction: "Reproduction") -> "Iterator[str]":
+    result = reproduction.result
+    makespan = "" if result.makespan_s is None else f", makespan {result.makespan_s:.6f} s"
+    verdict = "NOT reproduced" if reproduction.faults else "reproduced"
+    how = "the first " if reproduction.faults else ""
+    equal = f"{how}{reproduction.records} records are the same"
+    yield f"{run}: {verdict}; {equal}; here {result.status}{makespan}"
+    yield from (f"  {each}" for each in (*reproduction.versions, *reproduction.faults))
+    if reproduction.faults:
+        again = run / "scenario.yaml"
+        yield f"  all that changed: ncsim run {again} -o again && ncsim compare {run} again"
