@@ -121,9 +121,12 @@ def trace_share(size: int, tasks: int, interference: str) -> None:
     """Print which part of a run is writing its trace."""
     assembly = assemble(layered_scenario(size, tasks, interference))
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "trace.jsonl"
         pairs = [
-            (cpu_s(assembly), cpu_s(assembly, lambda: [TraceWriter(path)])) for _ in range(REPEATS)
+            (
+                cpu_s(assembly),
+                cpu_s(assembly, lambda k=k: [TraceWriter(Path(folder, f"{k}.jsonl"))]),
+            )
+            for k in range(REPEATS)
         ]
     plain_s, traced_s = (statistics.median(each) for each in zip(*pairs, strict=True))
     print(

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ncsim_core.api import RunResult as RunResult
     from ncsim_core.api import prepare as prepare
     from ncsim_core.api import simulate as simulate
+    from ncsim_core.engine.observer import BatchObserver as BatchObserver
     from ncsim_core.engine.observer import Observer as Observer
     from ncsim_core.engine.outcome import RunStatus as RunStatus
     from ncsim_core.engine.setup import Limits as Limits
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _ROOMS = {
+    "BatchObserver": "ncsim_core.engine.observer",
     "Limits": "ncsim_core.engine.setup",
     "NcsimError": "ncsim_core.errors",
     "Observer": "ncsim_core.engine.observer",
@@ -36,6 +38,7 @@ _ROOMS = {
 }
 
 __all__ = [
+    "BatchObserver",
     "Limits",
     "NcsimError",
     "Observer",

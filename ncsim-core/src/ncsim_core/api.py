@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from ncsim_core.engine.observer import Observer
+    from ncsim_core.engine.observer import Watcher
     from ncsim_core.engine.setup import Limits
     from ncsim_core.engine.state import TaskRun, Transfer
     from ncsim_core.units import Instant
@@ -130,7 +130,7 @@ def prepare(
     scenario: Scenario | str | Path,
     *,
     limits: Limits | None = None,
-    observers: Iterable[Observer] = (),
+    observers: Iterable[Watcher] = (),
     **overrides: object,
 ) -> Simulation:
     """Return a simulation of a scenario that can be stepped and observed.
@@ -154,7 +154,7 @@ def simulate(
     scenario: Scenario | str | Path,
     *,
     limits: Limits | None = None,
-    observers: Iterable[Observer] = (),
+    observers: Iterable[Watcher] = (),
     **overrides: object,
 ) -> RunResult:
     """Run a scenario to its end; arguments and errors as for ``prepare``."""

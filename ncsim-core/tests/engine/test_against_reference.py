@@ -231,7 +231,7 @@ def differs(scenario, wrong):
 
 @pytest.mark.parametrize("wrong", WRONG, ids=lambda wrong: wrong.__name__)
 def test_scenarios_tell_a_wrong_rule(wrong):
-    search = settings(max_examples=500, database=None, derandomize=True, phases=[Phase.generate])
+    search = settings(max_examples=5000, database=None, derandomize=True, phases=[Phase.generate])
     try:
         find(engine_cases(), lambda scenario: differs(scenario, wrong), settings=search)
     except NoSuchExample:

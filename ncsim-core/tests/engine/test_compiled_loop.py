@@ -18,7 +18,8 @@ from ncsim_core.contracts.scheduler import Scheduler
 from ncsim_core.engine import looping
 from ncsim_core.engine import simulation as simulation_module
 from ncsim_core.engine.compiled import radio_loading, telling
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.events import TRANSFER_START
+from ncsim_core.engine.observer import BatchObserver
 from ncsim_core.engine.outcome import RunStatus
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
@@ -121,7 +122,7 @@ def test_runs_and_traces_are_equal_to_the_last_bit(case, events_kept, rates_kept
 def interrupted_after(events, simulation):
     """Return a simulation whose compiled run somebody has interrupted."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(simulation_module, "EVENTS_AT_A_TIME", events)
+        patch.setattr(simulation_module, "MOST_AT_A_TIME", events)
         patch.setattr(Simulation, "_handle_compiled", interrupting(Simulation._handle_compiled))
         with contextlib.suppress(KeyboardInterrupt):
             simulation.run()
@@ -167,17 +168,15 @@ def test_the_engine_in_python_could_go_on_from_the_state_of_a_compiled_run(case,
     assert picture(handed_over.state) == picture(python.state)
 
 
-class FailingObserver(Observer):
-    """Fails when the third transfer starts, as a writer does when the disk is full."""
-
-    may_lag = True
+class FailingObserver(BatchObserver):
+    """Fails when it is told of the third start of a transfer, as a writer when the disk is full."""
 
     def __init__(self):
         self._started = 0
 
-    def transfer_started(self, at_us, transfer, route, size_MB):
-        self._started += 1
-        if self._started == 3:
+    def events_happened(self, batch):
+        self._started += [kind for _, kind, _, _ in batch.events].count(TRANSFER_START)
+        if self._started >= 3:
             raise TraceError("the disk is full")
 
 
@@ -204,7 +203,6 @@ def star(model=None, limits=None):
 
 
 ENDS = {
-    "an observer fails": (lambda: (star(), FailingObserver()), RunStatus.FAILED),
     "a share fails": (lambda: (star(Choking),), RunStatus.FAILED),
     "enough events": (lambda: (star(limits=Limits(max_events=7)),), RunStatus.LIMIT_REACHED),
     "no event": (lambda: (star(limits=Limits(max_events=0)),), RunStatus.LIMIT_REACHED),
@@ -224,6 +222,15 @@ def test_every_end_is_the_same(end):
     assert compiled._compiled is not None
     assert outcome == steps(python)
     assert outcome.status is status
+
+
+def test_an_observer_that_fails_ends_the_run():
+    python, _ = simulation_of(star(), FailingObserver())
+    compiled, _ = simulation_of(star(), FailingObserver())
+
+    for outcome in (compiled.run(), steps(python)):
+        assert (outcome.status, outcome.detail) == (RunStatus.FAILED, "the disk is full")
+        assert outcome.makespan_us is None
 
 
 def test_who_watches_is_told_up_to_the_share_that_fails():

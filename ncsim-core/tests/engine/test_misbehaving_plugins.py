@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from ncsim_core.contracts.interference_model import InterferenceSession
+from ncsim_core.contracts.interference_model import Competition, InterferenceSession
 from ncsim_core.contracts.queue_model import QueueModel
 from ncsim_core.engine.observer import Observer
 from ncsim_core.engine.simulation import Simulation
@@ -167,6 +167,20 @@ def test_rubbish_from_a_plugin_ends_the_run_and_names_it_or_means_something(meth
         assert "internal" not in detail
     else:  # no DAGs, nothing to wait for, no route: answers that a plug-in may give
         assert (method, repr(rubbish)) in MEANINGFUL or method == "push"
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    [Competition(-1), Competition(1.0), Competition(0, "2"), Competition(0, 0, float("nan"))],
+    ids=repr,
+)
+def test_competition_is_two_counts_and_a_factor(nonsense):
+    kind, plant = PLANTED["session.competition"]
+
+    status, detail = ending(plant(lambda links, *_: [nonsense] * len(links)))
+
+    assert status == "failed"
+    assert f"{kind} 'my_{kind}' (my-package 1.2): competition() gave {nonsense!r}" in detail
 
 
 MEANINGFUL = {

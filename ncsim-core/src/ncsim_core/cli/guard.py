@@ -1,6 +1,6 @@
 """Limits on the clock and on memory, kept even if a plug-in never comes back.
 
-The clock is looked at between two events. A component that does not return from a call is
+The clock is looked at ten times a second. A component that does not return from a call is
 interrupted a moment later, where the system has alarms, and the run says where it was.
 """
 
@@ -48,8 +48,7 @@ class Guard:
             simulation.run()
             return
         try:
-            while simulation.outcome is None and time.monotonic() < deadline_s:
-                simulation.step()
+            simulation.run_until(deadline_s)
             place = ""
         except StuckError as stuck:
             place = stuck.place

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 from typing_extensions import override
 
-from ncsim_core.engine.observer import Observer
-from ncsim_core.units import Instant, s_from_us
+from ncsim_core.engine.events import TASK_COMPLETE
+from ncsim_core.engine.observer import Batch, BatchObserver
+from ncsim_core.units import s_from_us
 
 if TYPE_CHECKING:
     from ncsim_core.engine.outcome import Outcome
@@ -75,11 +76,10 @@ class Pace:
         return (done - before) / (now_s - since_s) if now_s > since_s else 0.0
 
 
-class RunProgress(Observer):
+class RunProgress(BatchObserver):
     """Shows how many tasks of a run have ended."""
 
     wants_rates = False
-    may_lag = True
 
     def __init__(self, line: ProgressLine) -> None:
         self._line = line
@@ -91,9 +91,10 @@ class RunProgress(Observer):
         self._total = len(setup.tasks)
 
     @override
-    def task_ended(self, at_us: Instant, task: int, node: int) -> None:
-        self._ended += 1
-        self._line.show(f"{self._ended}/{self._total} tasks, {s_from_us(at_us):.3f} s simulated")
+    def events_happened(self, batch: Batch) -> None:
+        self._ended += [kind for _, kind, _, _ in batch.events].count(TASK_COMPLETE)
+        now_s = s_from_us(batch.events[-1][0])
+        self._line.show(f"{self._ended}/{self._total} tasks, {now_s:.3f} s simulated")
 
     @override
     def run_ended(self, outcome: "Outcome") -> None:

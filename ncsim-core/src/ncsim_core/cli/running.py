@@ -13,7 +13,7 @@ from ncsim_core.api import RunResult, result_of
 from ncsim_core.cli.guard import Guard
 from ncsim_core.cli.progress import ProgressLine, RunProgress
 from ncsim_core.engine.accompanying import accompanied
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.observer import Watcher
 from ncsim_core.engine.setup import Limits
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.errors import ScenarioError
@@ -66,7 +66,7 @@ def execute(request: RunRequest) -> RunResult:
     if request.trace_level not in ("full", "coarse", "off"):
         raise ScenarioError(f"--trace {request.trace_level!r}: choose full, coarse or off")
     line = ProgressLine(is_wanted=not request.quiet)
-    observers: list[Observer] = [RunProgress(line)] if line.is_shown else []
+    observers: list[Watcher] = [RunProgress(line)] if line.is_shown else []
     try:
         if request.output is None:
             return _simulated(request, observers)
@@ -77,7 +77,7 @@ def execute(request: RunRequest) -> RunResult:
         line.clear()
 
 
-def _simulated(request: RunRequest, observers: list[Observer]) -> RunResult:
+def _simulated(request: RunRequest, observers: list[Watcher]) -> RunResult:
     scenario = request.scenario
     with request.guard.watching() as deadline_s:
         assembly = assemble(scenario)
@@ -87,7 +87,7 @@ def _simulated(request: RunRequest, observers: list[Observer]) -> RunResult:
     return result_of(simulation)
 
 
-def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> RunResult:
+def _recorded(request: RunRequest, observers: list[Watcher], folder: Path) -> RunResult:
     from ncsim_core.metrics import compute_metrics
     from ncsim_core.trace.recorder import RunRecorder
 
@@ -97,7 +97,7 @@ def _recorded(request: RunRequest, observers: list[Observer], folder: Path) -> R
     # Metrics are those that the trace gives: without rates in it, none are counted either.
     counted: TraceLevel = "full" if request.trace_level == "full" else "coarse"
     recorder = RunRecorder(header, counted, keeps_steps=False)
-    watching: list[Observer] = [*observers, recorder]
+    watching: list[Watcher] = [*observers, recorder]
     with ExitStack() as open_files:
         if request.trace_level != "off":
             name = "trace.jsonl.gz" if request.compress else "trace.jsonl"

@@ -16,8 +16,7 @@ better what a whole route carries, because relays forward only what they receive
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
-from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, TypeAlias
 
 from typing_extensions import override
 
@@ -45,8 +44,8 @@ class Competition(NamedTuple):
 
 NO_COMPETITION: Final = Competition()
 
-competition_of: Final = partial(tuple.__new__, Competition)
-"""Makes a ``Competition`` of a tuple of its fields, in a third of the time of naming them."""
+Against: TypeAlias = tuple[Sequence[int], Sequence[int], Sequence[float]]
+"""The fields of ``Competition`` of several links, as columns."""
 
 
 class RouteRates(NamedTuple):

@@ -5,18 +5,27 @@ Every error names the component, its distribution and version, and the value.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TypeVar
+from numbers import Integral
+from typing import TYPE_CHECKING, SupportsFloat, TypeVar
 
 from typing_extensions import override
 
 from ncsim_core.builtin.queue_models import FifoQueue
-from ncsim_core.contracts.interference_model import Competition, InterferenceSession, RouteRates
+from ncsim_core.contracts.interference_model import (
+    Against,
+    Competition,
+    InterferenceSession,
+    RouteRates,
+)
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.scheduler import NetworkSnapshot
 from ncsim_core.errors import NcsimError, PlacementError, PluginError, told
 from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkIndex, Network, NodeId, NodeIndex, Route
 from ncsim_core.workflow import DAG, Injection, PlacementPlan
+
+if TYPE_CHECKING:
+    from ncsim_core.engine.sessions.tabled_session import TabledSession
 
 T = TypeVar("T")
 
@@ -128,9 +137,36 @@ class CheckedSession(InterferenceSession):
             told = f"{len(answers)} answers for {len(links)} links"
             raise PluginError(f"{self._who}: competition() gave {told}")
         for answer in answers:
-            if not isinstance(answer, Competition):
+            if not _is_competition(answer):
                 raise PluginError(f"{self._who}: competition() gave {answer!r}")
         return answers
+
+    def against(self, links: Sequence[LinkIndex]) -> Against:
+        """Return what each of ``links``, at least one, is up against now, as columns."""
+        contenders, hidden, factors = zip(*self.competition(links), strict=True)
+        return contenders, hidden, factors
+
+
+def _is_competition(answer: object) -> bool:
+    """Return whether an answer holds two counts and a factor."""
+    if not isinstance(answer, Competition):
+        return False
+    fields: Sequence[object] = answer
+    *counts, factor = fields
+    are_counts = all(isinstance(count, Integral) and int(count) >= 0 for count in counts)
+    return are_counts and _is_factor(factor)
+
+
+def _is_factor(number: object) -> bool:
+    return isinstance(number, SupportsFloat) and 0.0 <= float(number) <= 1.0
+
+
+class CheckedTables(CheckedSession):
+    """A session of the engine's own on a model's tables, which have been checked as a whole."""
+
+    def __init__(self, session: "TabledSession", who: ComponentIdentity) -> None:
+        super().__init__(session, who)
+        self.against = session.against  # type: ignore[method-assign]  # without a call in between
 
 
 def checked_route_rates(

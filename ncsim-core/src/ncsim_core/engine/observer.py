@@ -1,19 +1,40 @@
-"""What can be watched while a run goes on.
+"""What can be watched while a run goes on: at once, event by event, or in batches.
 
 Tasks and dependencies are told apart by their number in the run (``Setup.tasks`` and
 ``Setup.dependencies``), nodes and links by their index in the network. A transfer has the
 number of its dependency.
 """
 
-from collections.abc import Sequence
-from functools import partial
-from typing import Final, Literal, NamedTuple, TypeAlias
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Literal, NamedTuple, TypeAlias
 
-from ncsim_core.contracts.interference_model import Competition
+from ncsim_core.contracts.interference_model import NO_COMPETITION, Against, Competition
+from ncsim_core.engine.event_queue import Due
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.network import LinkIndex, NodeIndex
 from ncsim_core.units import Instant
+
+
+class Watcher:
+    """What all who watch a run are told; derive from ``Observer`` or ``BatchObserver``.
+
+    The engine calls these in the order in which things happen and never looks at what
+    they do. Nobody may change what is shown.
+    """
+
+    wants_rates = True
+    """Whether rates are told; without them runs are a little faster."""
+
+    def run_started(self, setup: Setup) -> None:
+        """Called once, before the first event."""
+
+    def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
+        """A DAG has entered; ``nodes`` has the node of each of its tasks, in file order."""
+
+    def run_ended(self, outcome: Outcome) -> None:
+        """Called once, after the last event."""
 
 
 class RateCause(NamedTuple):
@@ -41,35 +62,8 @@ class RateChange(NamedTuple):
     competition: Competition
 
 
-RateColumns: TypeAlias = tuple[
-    Sequence[int], Sequence[float], Sequence[LinkIndex], Sequence[int], Sequence[Competition]
-]
-"""Several rate changes as columns of equal length, one for each field of ``RateChange``."""
-
-rate_cause_of: Final = partial(tuple.__new__, RateCause)
-_rate_change_of: Final = partial(tuple.__new__, RateChange)
-"""Make a ``RateCause`` or ``RateChange`` of a tuple, in a third of the time of naming fields."""
-
-
-class Observer:
-    """Base of everything that watches a run; override what you want to see.
-
-    The engine calls these in the order in which things happen and never looks at what
-    they do. An observer must not change what it is shown.
-    """
-
-    wants_rates = True
-    """Whether ``rates_assigned`` is called; without it runs are a little faster."""
-
-    may_lag = False
-    """Whether calls may come some thousand events late, in the same order; for those who look at
-    nothing but what they are told. Compiled runs are only for such observers."""
-
-    def run_started(self, setup: Setup) -> None:
-        """Called once, before the first event."""
-
-    def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
-        """A DAG has entered; ``nodes`` has the node of each of its tasks, in file order."""
+class Observer(Watcher):
+    """Is told of every event when it happens, and may look at the state of the run then."""
 
     def task_ready(self, at_us: Instant, task: int, node: NodeIndex) -> None:
         """All inputs of a task have arrived."""
@@ -90,15 +84,50 @@ class Observer:
     ) -> None:
         """Rates have moved; one call per start or finish that moved any."""
 
-    def rate_columns_assigned(self, at_us: Instant, cause: RateCause, columns: RateColumns) -> None:
-        """The same in columns, which is how the engine tells it.
-
-        Override this instead of ``rates_assigned`` to save making an object of every change.
-        """
-        self.rates_assigned(at_us, cause, [*map(_rate_change_of, zip(*columns, strict=True))])
-
     def transfer_ended(self, at_us: Instant, transfer: int) -> None:
         """The last byte has been served."""
 
-    def run_ended(self, outcome: Outcome) -> None:
-        """Called once, after the last event."""
+
+RateColumns: TypeAlias = tuple[
+    Sequence[int], Sequence[float], Sequence[LinkIndex], Sequence[int], Against | None
+]
+"""Several rate changes in order of their transfers: the fields of ``RateChange`` as columns.
+
+The last is ``None`` under a model by which no link affects another.
+"""
+
+
+def changes_of(columns: RateColumns) -> list[RateChange]:
+    """Return rate changes as one object per transfer."""
+    *plain, against = columns
+    competition = (
+        [NO_COMPETITION] * len(columns[0])
+        if against is None
+        else map(Competition._make, zip(*against, strict=True))
+    )
+    return list(map(RateChange, *plain, competition))
+
+
+class Batch(NamedTuple):
+    """What has happened since the last batch.
+
+    Args:
+        events: In order: time, kind (``engine/events.py``), a number of no meaning here, number of
+            the DAG, task or transfer. Injections are among them, and told by ``dag_injected`` too.
+        rates: What the start or finish of a transfer moved, by its place in ``events``.
+    """
+
+    events: Sequence[Due]
+    rates: Mapping[int, RateColumns]
+
+
+class BatchObserver(Watcher):
+    """Is told later, of many events at once, for a fraction of the time; good for records.
+
+    Nothing is held back for longer than some tenths of a second, nor when a DAG enters or the run
+    ends. Only runs that nobody watches at once may go through the compiled loop.
+    """
+
+    @abstractmethod
+    def events_happened(self, batch: Batch) -> None:
+        """Take note of a batch, which is not kept: its lists are used again."""

@@ -6,17 +6,15 @@ transfer is credited does not depend on which other links were asked about, and 
 refresh equals global refresh to the last bit.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
-from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Touched
-from ncsim_core.engine.observer import rate_cause_of
+from ncsim_core.engine.observer import RateCause, changes_of
 from ncsim_core.engine.route_rates import moves_by_route
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
-from ncsim_core.network import LinkIndex
 from ncsim_core.units import MICROSECONDS_PER_SECOND, NEVER_us, service_time_us
 
 Change: TypeAlias = Callable[[State, Transfer], Touched]
@@ -30,7 +28,7 @@ def refresh(transfer: Transfer, change: Change, state: State, setup: Setup) -> N
     else:
         moves = moves_by_link(transfer, touched, state, setup)
     bring_up_to_date(moves, state)  # 3. to 5.
-    if moves and state.rate_observers:
+    if moves and state.shows_rates:
         report_rates(transfer, change, moves, state)
 
 
@@ -94,18 +92,17 @@ def bring_up_to_date(moves: Iterable[Move], state: State) -> None:
 
 def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: State) -> None:
     """Show the new rates and what explains them to whoever watches."""
-    moves.sort()  # by number, which differ
-    cause = rate_cause_of(("start" if change is occupy else "finish", transfer.number))
-    flows_on = state.links.flows
-    numbers, _, rates_MBps, bottlenecks = zip(*moves, strict=True)
+    if len(moves) > 1:
+        moves.sort()  # by number, which differ
+    numbers, _, rates_MBps, bottlenecks = zip(*moves)  # noqa: B905 - a keyword takes a fifth longer
+    flows_on, session, log = state.links.flows, state.interference, state.log
     counts = [len(flows_on[link]) for link in bottlenecks]
-    columns = numbers, rates_MBps, bottlenecks, counts, competition_on(bottlenecks, state)
-    for observer in state.rate_observers:
-        observer.rate_columns_assigned(state.now_us, cause, columns)
-
-
-def competition_on(links: Sequence[LinkIndex], state: State) -> Sequence[Competition]:
-    """Return what each of ``links`` is up against now."""
-    if state.interference is None:
-        return [NO_COMPETITION] * len(links)
-    return state.interference.competition(links)
+    against = None if session is None else session.against(bottlenecks)
+    columns = numbers, rates_MBps, bottlenecks, counts, against
+    if log is not None:
+        log.rates[len(log.events) - 1] = columns
+    if state.observers:
+        cause = RateCause("start" if change is occupy else "finish", transfer.number)
+        for observer in state.observers:
+            if observer.wants_rates:
+                observer.rates_assigned(state.now_us, cause, changes_of(columns))

@@ -1,14 +1,16 @@
 """One run: take the next event, handle it, until nothing is left or a reason to stop appears."""
 
 import math
+import time
 from collections.abc import Callable, Iterable
 from heapq import heappop
 from typing import TYPE_CHECKING, Final, TypeAlias, assert_never
 
 from ncsim_core.engine.event_queue import Due
 from ncsim_core.engine.events import DAG_INJECT, TRANSFER_COMPLETE, Event, EventKind
+from ncsim_core.engine.log import Log
 from ncsim_core.engine.looping import compiled_run_of
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.observer import BatchObserver, Observer, Watcher
 from ncsim_core.engine.outcome import Outcome, RunStatus
 from ncsim_core.engine.setup import Limits, Reach, Setup
 from ncsim_core.engine.state import State
@@ -29,7 +31,11 @@ if TYPE_CHECKING:
 
 MAX_LINES_IN_DETAIL = 20
 
-EVENTS_AT_A_TIME = 10_000
+MOST_AT_A_TIME = 1000
+"""Events between two looks at the clock and two batches for those who watch."""
+
+LAG_s = 0.1
+"""About how long these may take."""
 
 Handler: TypeAlias = Callable[[int, State, Setup], None]
 """Does what an event of one kind means, given the number of its DAG, task or transfer."""
@@ -78,7 +84,7 @@ class Simulation:
         network: Network,
         models: Models,
         limits: Limits | None = None,
-        observers: Iterable[Observer] = (),
+        observers: Iterable[Watcher] = (),
         *,
         reach: Reach = Reach.LOCAL,
     ) -> None:
@@ -86,6 +92,7 @@ class Simulation:
         self._state = State.of(self.setup)
         self._compiled: CompiledRun | None = None
         self._is_behind = False
+        self._noted: list[Due] | None = None  # events in the state's log
         self.outcome: Outcome | None = None
         chosen = self.setup.limits
         self._max_events = math.inf if chosen.max_events is None else chosen.max_events
@@ -105,7 +112,7 @@ class Simulation:
             self._compiled.unload()
         return self._state
 
-    def observe(self, observer: Observer) -> None:
+    def observe(self, watcher: Watcher) -> None:
         """Let somebody watch the rest of the run.
 
         Raises:
@@ -114,17 +121,41 @@ class Simulation:
         state = self._state
         if state.events or self.outcome is not None:
             raise ValueError("observers must be added before the first event is handled")
-        state.observers += (observer,)
-        if observer.wants_rates:
-            state.rate_observers += (observer,)
-        observer.run_started(self.setup)
+        state.watchers += (watcher,)
+        if isinstance(watcher, Observer):
+            state.observers += (watcher,)
+        elif isinstance(watcher, BatchObserver):
+            state.log = Log((*(state.log.observers if state.log else ()), watcher))
+            self._noted = state.log.events
+        state.shows_rates |= watcher.wants_rates
+        watcher.run_started(self.setup)
 
     def run(self) -> Outcome:
-        """Step until the run ends, and return how it did."""
+        """Run to the end, and return how it was."""
         if self._compiled is None and not self._state.events and self.outcome is None:
             self._compiled = compiled_run_of(self._state, self.setup, self._last_us)
+        if self._compiled is None:
+            self.run_until(math.inf)
         while self.outcome is None:
-            self._advance(EVENTS_AT_A_TIME)
+            self._advance(MOST_AT_A_TIME)
+        return self.outcome
+
+    def run_until(self, deadline_s: float) -> Outcome | None:
+        """Run until the end or shortly after a time on the clock; return how it ended, if it did.
+
+        Args:
+            deadline_s: As ``time.monotonic`` counts.
+        """
+        count = 1
+        began_s = time.monotonic()
+        while self.outcome is None and began_s < deadline_s:
+            self._advance(count)
+            now_s = time.monotonic()
+            if now_s - began_s > LAG_s:
+                count = max(1, count // 2)
+            elif now_s - began_s < LAG_s / 2:
+                count = min(2 * count, MOST_AT_A_TIME)
+            began_s = now_s
         return self.outcome
 
     def step(self) -> Event | None:
@@ -143,24 +174,39 @@ class Simulation:
     def _advance(self, count: int) -> Due | None:
         """Handle up to ``count`` events and return the last, ``None`` if the run ended instead."""
         try:
-            if self._compiled is not None:
-                return self._handle_compiled(count, self._compiled)
-            if self._state.events >= self._max_events:
-                self._end_without_event(self._state.queue.pop())
-                return None
-            return self._handle(count)
+            due = self._handle_some(count)
+            self._tell()
         except EngineError:
             raise
         except NcsimError as error:
             self._end(RunStatus.FAILED, str(error))
             return None
+        finally:
+            self._tell()  # what was noted before anything was raised
+        return due
+
+    def _handle_some(self, count: int) -> Due | None:
+        if self._compiled is not None:
+            return self._handle_compiled(count, self._compiled)
+        if self._state.events >= self._max_events:
+            self._end_without_event(self._state.queue.pop())
+            return None
+        due = self._handle(count)
+        self._end_if_unroutable()
+        return due
+
+    def _tell(self) -> None:
+        """Tell batch observers what has happened."""
+        if self._state.log is not None:
+            self._state.log.tell()
 
     def _handle(self, count: int) -> Due | None:
         state, setup, queue = self._state, self.setup, self._state.queue
         stop_at = min(state.events + count, self._max_events)
         soon, later, is_time = queue.soon, queue.later, queue.is_time
+        noted = self._noted
         due: Due | None = None
-        while state.events < stop_at:
+        while state.events < stop_at and not state.unroutable:
             if soon and not (later and later[0] < soon[0]):  # as in queue.pop(), without the call
                 due = heappop(soon)
             elif later:
@@ -177,18 +223,16 @@ class Simulation:
                     return None
                 state.now_us = at_us
             state.events += 1
+            if noted is not None:
+                noted.append(due)
             HANDLERS[kind](number, state, setup)
-            if kind == DAG_INJECT and state.unroutable:
-                self._end(RunStatus.UNROUTABLE, _unroutable_detail(state))
-                return due
         return due
 
     def _handle_compiled(self, count: int, run: "CompiledRun") -> Due | None:
         self._is_behind = True
         goes_on = run.advance(count)
-        if self._state.unroutable:
-            self._end(RunStatus.UNROUTABLE, _unroutable_detail(self._state))
-        elif not goes_on:
+        self._end_if_unroutable()
+        if not goes_on:
             self._end_without_event(run.due)
             return None
         return run.due
@@ -231,12 +275,17 @@ class Simulation:
                 f"nothing is left to happen, yet {state.unfinished_tasks} tasks have not ended"
             )
 
+    def _end_if_unroutable(self) -> None:
+        if self._state.unroutable:
+            self._end(RunStatus.UNROUTABLE, _unroutable_detail(self._state))
+
     def _end(self, status: RunStatus, detail: str) -> None:
+        self._tell()
         state = self._state
         makespan_us = state.last_task_end_us if status is RunStatus.COMPLETED else None
         self.outcome = Outcome(status, state.now_us, makespan_us, state.events, detail)
-        for observer in state.observers:
-            observer.run_ended(self.outcome)
+        for watcher in state.watchers:
+            watcher.run_ended(self.outcome)
 
 
 def _blocked_detail(state: State, setup: Setup) -> str:

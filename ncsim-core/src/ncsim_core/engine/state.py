@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from ncsim_core.engine.boundary import CheckedQueue, asked
+from ncsim_core.engine.boundary import CheckedQueue, CheckedSession, asked
 from ncsim_core.engine.event_queue import EventQueue
 from ncsim_core.engine.sessions.choice import session_of
 from ncsim_core.units import NEVER_us
@@ -14,9 +14,9 @@ from ncsim_core.units import NEVER_us
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ncsim_core.contracts.interference_model import InterferenceSession
+    from ncsim_core.engine.log import Log
     from ncsim_core.engine.numbering import DependencyEntry, TaskEntry
-    from ncsim_core.engine.observer import Observer
+    from ncsim_core.engine.observer import Observer, Watcher
     from ncsim_core.engine.setup import Setup
     from ncsim_core.network import LinkIndex, NodeIndex, Route
     from ncsim_core.units import Instant
@@ -145,8 +145,10 @@ class State:
         links: All links.
         interference: The model's session of this run, ``None`` if no link affects another.
         queue: What is going to happen.
-        observers: Who watches.
-        rate_observers: Those who want to see rates.
+        watchers: All who watch.
+        observers: Those who are told at once.
+        log: What the others have not been told of, ``None`` if there are none.
+        shows_rates: Whether anybody wants to see rates.
         now_us: The time of the event being handled.
         events: Events handled.
         unfinished_tasks: Tasks that have not ended, of DAGs yet to come too.
@@ -160,10 +162,12 @@ class State:
     flows: dict[int, Transfer]
     nodes: list[NodeState]
     links: LinkStates
-    interference: InterferenceSession | None
+    interference: CheckedSession | None
     queue: EventQueue
+    watchers: tuple[Watcher, ...] = ()
     observers: tuple[Observer, ...] = ()
-    rate_observers: tuple[Observer, ...] = ()
+    log: Log | None = None
+    shows_rates: bool = False
     now_us: Instant = 0
     events: int = 0
     unfinished_tasks: int = 0

@@ -36,8 +36,10 @@ def place_dag(dag_number: int, seen: NetworkSnapshot, state: State, setup: Setup
     for run, node in zip(state.tasks[first : first + len(nodes)], nodes, strict=True):
         run.node = node
     state.free_tasks_placed += [task.pinned_to for task in dag.tasks].count(None)
-    for observer in state.observers:
-        observer.dag_injected(state.now_us, dag_number, nodes)
+    if state.log is not None:
+        state.log.tell()
+    for watcher in state.watchers:
+        watcher.dag_injected(state.now_us, dag_number, nodes)
     state.unroutable += unroutable_dependencies(dag_number, state, setup)
 
 

@@ -174,11 +174,4 @@ def _simulated(item: Item, resolver: Resolver, limits: RunLimits, started_s: flo
 
 def _run(simulation: Simulation, wall_s: float | None) -> Outcome | None:
     """Return how a run ended; ``None`` if time on the clock ran out."""
-    if wall_s is None:
-        return simulation.run()
-    deadline_s = time.perf_counter() + wall_s
-    while simulation.outcome is None:
-        simulation.step()
-        if time.perf_counter() > deadline_s and simulation.outcome is None:
-            return None
-    return simulation.outcome
+    return simulation.run() if wall_s is None else simulation.run_until(time.monotonic() + wall_s)

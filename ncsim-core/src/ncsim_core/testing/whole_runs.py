@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from ncsim_core.contracts.interference_model import InterferenceModel
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.observer import Watcher
 from ncsim_core.engine.setup import Limits, Reach
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.network import Link, LinkId, LinkRates, Network, Node, NodeId
@@ -39,7 +39,7 @@ class RunCase:
     interference: InterferenceModel
 
     def simulation(
-        self, *observers: Observer, limits: Limits | None = None, reach: Reach = Reach.LOCAL
+        self, *observers: Watcher, limits: Limits | None = None, reach: Reach = Reach.LOCAL
     ) -> Simulation:
         """Return a simulation of it that has not begun."""
         chosen = models(self.network, self.injections, interference=self.interference)

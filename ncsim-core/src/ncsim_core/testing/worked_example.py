@@ -3,7 +3,7 @@
 Source: the paper's Appendix B (``app:engine``), Table ``tab:worked_engine``.
 """
 
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.observer import Watcher
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.network import Link, LinkId, LinkRates, Network, Node, NodeId
 from ncsim_core.testing.toys import models
@@ -31,7 +31,7 @@ EXAMPLE = DAG(
 )
 
 
-def worked_example(*observers: Observer) -> Simulation:
+def worked_example(*observers: Watcher) -> Simulation:
     """Return a simulation of the example that has not begun."""
     injections = [Injection(0, EXAMPLE)]
     return Simulation(NETWORK, models(NETWORK, injections), observers=observers)

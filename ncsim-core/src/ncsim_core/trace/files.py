@@ -2,13 +2,12 @@
 
 import contextlib
 import gzip
-import io
 import json
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import BinaryIO, Final, TextIO
+from typing import BinaryIO, Final, TextIO, cast
 
 from ncsim_core.trace.records import TraceError
 
@@ -87,8 +86,8 @@ def trace_file(target: Path) -> Path:
     raise TraceError(f"{target}: this folder holds no {' or '.join(TRACE_NAMES)}")
 
 
-class TextSink:
-    """Where text goes: a stream of the caller's, or a file that is renamed when whole.
+class LineSink:
+    """Where lines go: a stream of the caller's, or a file that is renamed when whole.
 
     Args:
         target: Path (compressed if it ends in ``.gz``) or open text stream.
@@ -103,7 +102,8 @@ class TextSink:
         self._path: Path | None = None
         self._failure = "this file is already closed"
         if not isinstance(target, Path | str):
-            self._stream: TextIO | None = target
+            self._stream: TextIO | BinaryIO | None = target
+            self._put: Callable[[bytes], object] = lambda lines: target.write(lines.decode())
             return
         self._path = Path(target)
         self._final, self._written_to = _places(self._path)
@@ -113,14 +113,17 @@ class TextSink:
             self._raw = self._written_to.open("wb")
         except OSError as error:
             raise self._fault(error) from error
-        self._stream = _text_stream(self._raw, is_compressed=self._path.suffix == ".gz")
+        self._stream = self._raw
+        if self._path.suffix == ".gz":  # without name and time, equal lines give equal bytes
+            self._stream = cast("BinaryIO", gzip.GzipFile("", "wb", GZIP_LEVEL, self._raw, mtime=0))
+        self._put = self._stream.write
 
-    def write(self, text: str) -> None:
-        """Write text."""
+    def write(self, lines: bytes) -> None:
+        """Write lines in UTF-8."""
         if self._stream is None:
             raise TraceError(f"{self._path or 'trace'}: {self._failure}")
         try:
-            self._stream.write(text)
+            self._put(lines)
             if self._is_live:
                 self._stream.flush()
         except OSError as error:
@@ -166,14 +169,3 @@ class TextSink:
     def _fault(self, error: OSError) -> TraceError:
         self._failure = f"cannot be written: {error.strerror or error}"
         return TraceError(f"{self._path or 'trace'}: {self._failure}")
-
-
-def _text_stream(raw: BinaryIO, *, is_compressed: bool) -> TextIO:
-    """Return a text stream onto ``raw``; without name and time, equal text gives equal bytes.
-
-    A lone surrogate is written as its escape, which is what JSON wants to see inside a string.
-    """
-    if is_compressed:
-        packed = gzip.GzipFile("", "wb", GZIP_LEVEL, raw, mtime=0)
-        return io.TextIOWrapper(packed, "utf-8", "backslashreplace", newline="\n")
-    return io.TextIOWrapper(raw, "utf-8", "backslashreplace", newline="\n")

@@ -4,10 +4,17 @@ from collections.abc import Sequence
 
 from typing_extensions import override
 
-from ncsim_core.engine.observer import Observer, RateCause, RateChange
+from ncsim_core.engine.events import (
+    TASK_COMPLETE,
+    TASK_READY,
+    TASK_START,
+    TRANSFER_COMPLETE,
+    TRANSFER_START,
+)
+from ncsim_core.engine.observer import Batch, BatchObserver, RateColumns, changes_of
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
-from ncsim_core.network import LinkIndex, NodeIndex
+from ncsim_core.network import NodeIndex, Route
 from ncsim_core.trace.building import RunBuilder
 from ncsim_core.trace.records import (
     VERSION,
@@ -20,7 +27,7 @@ from ncsim_core.trace.tables import injected_record, link_rows, node_rows
 from ncsim_core.units import Instant
 
 
-class RunRecorder(Observer):
+class RunRecorder(BatchObserver):
     """Observer that makes a ``RunTrace`` of a run.
 
     Args:
@@ -29,8 +36,6 @@ class RunRecorder(Observer):
         keeps_steps: Whether every rate is kept, as explanations need it. Without, metrics are
             those of a full trace and memory does not grow with the number of rates.
     """
-
-    may_lag = True
 
     def __init__(
         self,
@@ -79,39 +84,41 @@ class RunRecorder(Observer):
         self._begun.place(dag, nodes)
 
     @override
-    def task_ready(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._begun.ready_us[task] = at_us
+    def events_happened(self, batch: Batch) -> None:
+        builder = self._begun
+        times_us = {
+            TASK_READY: builder.ready_us,
+            TASK_START: builder.started_us,
+            TASK_COMPLETE: builder.ended_us,
+            TRANSFER_START: builder.transfer_started_us,
+        }
+        rates = batch.rates if self.wants_rates else {}
+        for place, (at_us, kind, _, number) in enumerate(batch.events):
+            if kind in times_us:
+                times_us[kind][number] = at_us
+            if kind == TRANSFER_START:
+                builder.route[number] = self._route_of(number)
+            elif kind == TRANSFER_COMPLETE:
+                builder.end_transfer(number, at_us)
+            if place in rates:
+                self._assign(at_us, kind, number, rates[place])
 
-    @override
-    def task_started(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._begun.started_us[task] = at_us
+    def _route_of(self, number: int) -> Route:
+        assert self._setup is not None
+        entry, nodes = self._setup.dependencies[number], self._begun.node_of_task
+        source, target = nodes[entry.source], nodes[entry.target]
+        assert source is not None  # what travels has been placed
+        assert target is not None
+        return self._setup.routes.route(source, target) or ()
 
-    @override
-    def task_ended(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._begun.ended_us[task] = at_us
-
-    @override
-    def transfer_started(
-        self, at_us: Instant, transfer: int, route: Sequence[LinkIndex], size_MB: float
-    ) -> None:
-        self._begun.route[transfer] = tuple(route)
-        self._begun.transfer_started_us[transfer] = at_us
-
-    @override
-    def transfer_ended(self, at_us: Instant, transfer: int) -> None:
-        self._begun.end_transfer(transfer, at_us)
-
-    @override
-    def rates_assigned(
-        self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
-    ) -> None:
+    def _assign(self, at_us: Instant, kind: int, number: int, columns: RateColumns) -> None:
         builder = self._begun
         if not self._keeps_steps:
-            for change in changes:
-                builder.set_rate(change.transfer, at_us, change.rate_MBps)
+            for transfer, rate_MBps in zip(*columns[:2], strict=True):
+                builder.set_rate(transfer, at_us, rate_MBps)
             return
-        by = "s" if cause.change == "start" else "e"
-        for change in changes:
+        by = "s" if kind == TRANSFER_START else "e"
+        for change in changes_of(columns):
             step = RateStep(
                 at_us,
                 change.rate_MBps,
@@ -119,7 +126,7 @@ class RunRecorder(Observer):
                 *change.competition,
                 change.flows_on_link,
                 by,
-                cause.transfer,
+                number,
             )
             builder.add_step(change.transfer, step)
 

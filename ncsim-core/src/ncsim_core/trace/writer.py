@@ -1,84 +1,61 @@
-"""Writes the trace of a run while it goes on, in constant memory.
-
-The frequent kinds are formatted by hand: same text as ``json.dumps`` with compact separators,
-at a fraction of the time.
-"""
+"""Writes the trace of a run while it goes on, in constant memory."""
 
 import json
-import math
-import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
+from operator import itemgetter
 from pathlib import Path
 from types import TracebackType
-from typing import Final, Self, TextIO, TypeVar
+from typing import Final, Self, TextIO
 
+from msgspec import Struct
 from typing_extensions import override
 
-from ncsim_core.contracts.interference_model import NO_COMPETITION, Competition
-from ncsim_core.engine.observer import Observer, RateCause, RateChange, RateColumns
+from ncsim_core.contracts.interference_model import Against
+from ncsim_core.engine.events import (
+    DAG_INJECT,
+    TASK_COMPLETE,
+    TASK_READY,
+    TASK_START,
+    TRANSFER_COMPLETE,
+    TRANSFER_START,
+)
+from ncsim_core.engine.observer import Batch, BatchObserver, RateColumns
 from ncsim_core.engine.outcome import Outcome
 from ncsim_core.engine.setup import Setup
 from ncsim_core.models import ComponentIdentity
-from ncsim_core.network import LinkIndex, NodeIndex, Route
+from ncsim_core.network import NodeIndex
+from ncsim_core.trace.encoding import (
+    EndRecord,
+    RateRecord,
+    StartRecord,
+    TaskRecord,
+    json_line,
+    line_of,
+    lines_of,
+)
 from ncsim_core.trace.fields import RECORDS, kinds_documented
-from ncsim_core.trace.files import TextSink
+from ncsim_core.trace.files import LineSink
 from ncsim_core.trace.records import FORMAT, TIME_UNIT, VERSION, TraceHeader, TraceLevel
 from ncsim_core.trace.tables import injected_record, link_rows, node_rows
 from ncsim_core.units import Instant
 
-BUFFER_LINES: Final = 1000
-"""About 100 KB."""
+TASK_KINDS: Final = {TASK_READY: "ready", TASK_START: "start", TASK_COMPLETE: "end"}
+KINDS: Final = {
+    **TASK_KINDS,
+    TRANSFER_START: "xstart",
+    TRANSFER_COMPLETE: "xend",
+    DAG_INJECT: "",  # there is a record already
+}
+"""Kinds of record by kind of event."""
 
-LONG_LINE_CHARACTERS: Final = 64 * 1024
-"""From here on a line, of an injection say, is written at once."""
-
-LIVE_FLUSH_s: Final = 0.25
-MAX_TEXTS_KEPT: Final = 10_000
-
-BY: Final = {"start": "s", "finish": "e"}
-
-_T = TypeVar("_T")
-
-to_json: Final[Callable[[object], str]] = json.JSONEncoder(
-    separators=(",", ":"), ensure_ascii=False, allow_nan=False
-).encode
+KIND_OF: Final = itemgetter(1)
+BY: Final = {TRANSFER_START: "s", TRANSFER_COMPLETE: "e"}
 
 
-class _Texts(dict[_T, str]):
-    """The text of each value as json writes it, kept because rates, links and routes recur.
-
-    Args:
-        text_of: Makes the text of a value.
-    """
-
-    def __init__(self, text_of: Callable[[_T], str]) -> None:
-        super().__init__()
-        self._text_of = text_of
-
-    def __missing__(self, value: _T) -> str:
-        text = self._text_of(value)
-        if len(self) < MAX_TEXTS_KEPT:
-            self[value] = text
-        return text
-
-
-def _float_text(number: float) -> str:
-    return float.__repr__(float(number))  # numpy's own subclass would say np.float64(...)
-
-
-def _alone_text(count: int) -> str:
-    """Return what ``count`` bottlenecks are up against that compete with nobody."""
-    zeros, ones = ",".join(["0"] * count), ",".join(["1.0"] * count)
-    return f'"nc":[{zeros}],"nh":[{zeros}],"fh":[{ones}]'
-
-
-def _route_text(route: Route) -> str:
-    return f"[{','.join(map(str, route))}]"
-
-
-class TraceWriter(Observer):
+class TraceWriter(BatchObserver):
     """Observer that writes a trace.
 
     Give it a path and it writes to a temporary name beside it, compressed if the name ends in
@@ -89,11 +66,9 @@ class TraceWriter(Observer):
         target: Path or text stream.
         header: What the trace says about its scenario.
         level: ``full``, or ``coarse`` to leave ``recalc`` records out.
-        is_live: Write under the final name at once, the header without delay and the rest at
-            least every quarter of a second, for those who follow a run.
+        is_live: Write under the final name, and to disk after every batch, for those who follow
+            a run.
     """
-
-    may_lag = True
 
     def __init__(
         self,
@@ -106,17 +81,9 @@ class TraceWriter(Observer):
         self.wants_rates = level == "full"
         self._header = header or TraceHeader()
         self._level = level
-        self._sink = TextSink(target, is_live=is_live)
-        self._is_live = is_live
-        self._due_s = -math.inf
-        self._float_text = _Texts(_float_text).__getitem__
-        self._route_text = _Texts(_route_text).__getitem__
-        self._number_text = _Texts[int](str).__getitem__
-        self._count_text = _Texts[int](str).__getitem__  # of a plug-in: 1 and 1.0 share a text
-        self._alone_text = _Texts(_alone_text).__getitem__
-        self._lines: list[str] = []
-        self._append = self._lines.append
-        self._counts = dict.fromkeys(RECORDS, 0)
+        self._sink = LineSink(target, is_live=is_live)
+        self._counts: Counter[str] = Counter()
+        self._nodes: list[NodeIndex] = []  # by task, as far as DAGs have entered
         self._setup: Setup | None = None
 
     def __enter__(self) -> Self:
@@ -133,121 +100,84 @@ class TraceWriter(Observer):
     @override
     def run_started(self, setup: Setup) -> None:
         self._setup = setup
-        self._put(to_json(header_document(self._header, self._level, setup)) + "\n")
+        self._sink.write(line_of(header_document(self._header, self._level, setup)))
 
     @override
     def dag_injected(self, at_us: Instant, dag: int, nodes: Sequence[NodeIndex]) -> None:
         assert self._setup is not None  # the engine starts runs before it injects
+        self._nodes += map(int, nodes)
         injected = injected_record(self._setup, at_us, dag)
         keys = (field.key for field in RECORDS["inject"].fields)
-        self._put_record("inject", at_us, dict(zip(keys, injected[2:], strict=True)))
-        self._put_record("place", at_us, {"d": dag, "n": [int(node) for node in nodes]})
+        fields = dict(zip(keys, injected[2:], strict=True))
+        self._write(line_of, "inject", at_us, fields)
+        self._write(line_of, "place", at_us, {"d": dag, "n": self._nodes[injected.first_task :]})
 
     @override
-    def task_ready(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._counts["ready"] += 1
-        self._append(f'{{"t":{at_us},"k":"ready","i":{task},"n":{node}}}\n')
-
-    @override
-    def task_started(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._counts["start"] += 1
-        self._append(f'{{"t":{at_us},"k":"start","i":{task},"n":{node}}}\n')
-
-    @override
-    def task_ended(self, at_us: Instant, task: int, node: NodeIndex) -> None:
-        self._counts["end"] += 1
-        self._append(f'{{"t":{at_us},"k":"end","i":{task},"n":{node}}}\n')
-        self._flush_if_due()
-
-    @override
-    def transfer_started(
-        self, at_us: Instant, transfer: int, route: Sequence[LinkIndex], size_MB: float
-    ) -> None:
-        self._counts["xstart"] += 1
-        links, size = self._route_text(tuple(route)), self._float_text(size_MB)
-        self._append(f'{{"t":{at_us},"k":"xstart","x":{transfer},"route":{links},"size":{size}}}\n')
-
-    @override
-    def rates_assigned(
-        self, at_us: Instant, cause: RateCause, changes: Sequence[RateChange]
-    ) -> None:
-        if changes:
-            transfers, rates_MBps, links, flows, against = zip(*changes, strict=True)
-            columns = transfers, rates_MBps, links, flows, against
-            self.rate_columns_assigned(at_us, cause, columns)
-
-    @override
-    def rate_columns_assigned(self, at_us: Instant, cause: RateCause, columns: RateColumns) -> None:
-        if self._level != "full":
-            return
-        self._counts["recalc"] += 1
-        change, number = cause
-        transfers, rates_MBps, links, flows, against = columns
-        text = self._number_text
-        self._append(
-            f'{{"t":{at_us},"k":"recalc","by":["{BY[change]}",{number}],'
-            f'"x":[{",".join(map(text, transfers))}],'
-            f'"r":[{",".join(map(self._float_text, rates_MBps))}],'
-            f'"l":[{",".join(map(text, links))}],{self._against_text(against)},'
-            f'"f":[{",".join(map(text, flows))}]}}\n'
-        )
-
-    def _against_text(self, against: Sequence[Competition]) -> str:
-        """Return the three columns of what bottlenecks are up against."""
-        if against.count(NO_COMPETITION) == len(against):
-            return self._alone_text(len(against))
-        text = self._count_text
-        contenders, hidden, factors = zip(*against, strict=True)
-        return (
-            f'"nc":[{",".join(map(text, contenders))}],"nh":[{",".join(map(text, hidden))}],'
-            f'"fh":[{",".join(map(self._float_text, factors))}]'
-        )
-
-    @override
-    def transfer_ended(self, at_us: Instant, transfer: int) -> None:
-        self._counts["xend"] += 1
-        self._append(f'{{"t":{at_us},"k":"xend","x":{transfer}}}\n')
-        self._flush_if_due()
+    def events_happened(self, batch: Batch) -> None:
+        assert self._setup is not None
+        nodes, rates = self._nodes, batch.rates if self.wants_rates else {}
+        dependencies, routes = self._setup.dependencies, self._setup.routes
+        records: list[Struct] = []
+        put, task_kind_of = records.append, TASK_KINDS.get
+        for place, (at_us, kind, _, number) in enumerate(batch.events):
+            name = task_kind_of(kind)
+            if name is not None:
+                put(TaskRecord(at_us, name, number, nodes[number]))
+                continue
+            if kind == TRANSFER_START:
+                entry = dependencies[number]
+                route = routes.route(nodes[entry.source], nodes[entry.target])
+                put(StartRecord(at_us, "xstart", number, route or (), entry.size_MB))
+            elif kind == TRANSFER_COMPLETE:
+                put(EndRecord(at_us, "xend", number))
+            columns = rates.get(place)
+            if columns is not None:
+                put(rate_record(at_us, (BY[kind], number), columns))
+        for kind, count in Counter(map(KIND_OF, batch.events)).items():
+            self._counts[KINDS[kind]] += count
+        self._counts["recalc"] += len(rates)
+        self._sink.write(lines_of(records))
 
     def note(self, at_us: Instant, namespace: str, data: object) -> None:
         """Put something of a plug-in on record, under the plug-in's name."""
-        self._put_record("note", at_us, {"ns": namespace, "data": data})
+        self._write(json_line, "note", at_us, {"ns": namespace, "data": data})
 
     @override
     def run_ended(self, outcome: Outcome) -> None:
-        counts = {kind: count for kind, count in self._counts.items() if count}
         fields = {
             "status": str(outcome.status),
             "makespan_us": outcome.makespan_us,
             "events": outcome.events,
             "detail": outcome.detail,
-            "counts": counts,
+            "counts": {kind: self._counts[kind] for kind in RECORDS if self._counts[kind]},
         }
-        self._put_record("done", outcome.ended_us, fields)
-        self._flush()
+        self._write(line_of, "done", outcome.ended_us, fields)
         self._sink.finish()
 
-    def _put_record(self, kind: str, at_us: Instant, fields: Mapping[str, object]) -> None:
+    def _write(
+        self,
+        encode: Callable[[Mapping[str, object]], bytes],
+        kind: str,
+        at_us: Instant,
+        fields: Mapping[str, object],
+    ) -> None:
         self._counts[kind] += 1
-        self._put(to_json({"t": at_us, "k": kind, **fields}) + "\n")
+        self._sink.write(encode({"t": at_us, "k": kind, **fields}))
 
-    def _put(self, line: str) -> None:
-        self._lines.append(line)
-        if len(line) >= LONG_LINE_CHARACTERS:
-            self._flush()
-        else:
-            self._flush_if_due()
 
-    def _flush_if_due(self) -> None:
-        """Write what waits if it is much or somebody follows; called when something has ended."""
-        is_full = len(self._lines) >= BUFFER_LINES
-        if is_full or (self._is_live and time.monotonic() >= self._due_s):
-            self._flush()
+def rate_record(at_us: Instant, cause: tuple[str, int], columns: RateColumns) -> RateRecord:
+    """Return the ``recalc`` of some rates."""
+    transfers, rates_MBps, links, flows, against = columns
+    contenders, hidden, factors = against or alone(len(links))
+    return RateRecord(
+        at_us, "recalc", cause, transfers, rates_MBps, links, contenders, hidden, factors, flows
+    )
 
-    def _flush(self) -> None:
-        self._sink.write("".join(self._lines))
-        self._lines.clear()
-        self._due_s = time.monotonic() + LIVE_FLUSH_s
+
+@cache
+def alone(count: int) -> Against:
+    """Return what several links are up against that compete with nobody."""
+    return (0,) * count, (0,) * count, (1.0,) * count
 
 
 def header_document(header: TraceHeader, level: TraceLevel, setup: Setup) -> dict[str, object]:

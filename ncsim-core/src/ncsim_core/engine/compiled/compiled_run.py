@@ -43,7 +43,7 @@ class CompiledRun:
         record.max_events = GREATEST if max_events is None else min(max_events, GREATEST)
         tables = setup.models.interference.tables()
         self._radio = None if tables is None else Radio(loads_of(tables), self._arrays)
-        self._teller = Teller(self._arrays, state, setup, tables)
+        self._teller = Teller(self._arrays, state, tables)
         self._to_release = (0, 0)
 
     def advance(self, count: int) -> bool:

@@ -72,7 +72,7 @@ ARRAYS: Final = {
     "hidden": _dtype(i8="units"),
     "levels": LEVEL,  # by link, then level
     "shares": _dtype(f8="factor"),  # by row, then stations; not a number where not worked out yet
-    "happened": _dtype(i8="at_us kind number moves"),
+    "happened": _dtype(i8="at_us kind moves number"),
     "assigned": _dtype(f8="rate_MBps", i8="transfer bottleneck flows contenders hidden level"),
 }
 """The arrays of a run; lists are in them from the front."""

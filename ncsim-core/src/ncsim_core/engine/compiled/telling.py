@@ -1,120 +1,89 @@
-"""What the compiled loop noted, told to observers as the engine tells it."""
+"""What the compiled loop noted, told to batch observers as the engine in Python tells it."""
 
-from collections.abc import Sequence
-from operator import itemgetter
-from typing import Final, TypeAlias
+from itertools import pairwise
+from typing import Any, Final, TypeAlias
 
-from ncsim_core.contracts.interference_model import NO_COMPETITION, competition_of
+import numpy as np
+
+from ncsim_core.contracts.interference_model import Against
 from ncsim_core.contracts.interference_tables import InterferenceTables
 from ncsim_core.engine.compiled import layout
 from ncsim_core.engine.compiled.arrays import Arrays, records
-from ncsim_core.engine.events import (
-    TASK_COMPLETE,
-    TASK_READY,
-    TASK_START,
-    TRANSFER_COMPLETE,
-    TRANSFER_START,
-)
-from ncsim_core.engine.observer import RateColumns, rate_cause_of
-from ncsim_core.engine.setup import Setup
+from ncsim_core.engine.compiled.records import Record
+from ncsim_core.engine.observer import RateColumns
 from ncsim_core.engine.state import State
-from ncsim_core.units import Instant
 
 EVENTS_KEPT: Final = 4096
 RATES_KEPT: Final = 16_384
 """How much is noted before observers are told; 1 MB."""
 
-Assigned: TypeAlias = tuple[float, int, int, int, int, int, int]
-"""A row of the array ``assigned``."""
-
-TRANSFER_OF: Final = itemgetter(1)
+Rates: TypeAlias = dict[int, RateColumns]
 
 
 class Teller:
     """Tells the observers of one run what the loop has noted.
 
     Args:
-        arrays: Of the run; its log is put in.
-        state: Whose observers are told.
-        setup: Of the run.
+        arrays: Of the run; the loop's own log is put in.
+        state: Whose log the observers are told from.
         tables: What the interference model knows of competition, if it has any.
     """
 
-    def __init__(
-        self, arrays: Arrays, state: State, setup: Setup, tables: InterferenceTables | None
-    ) -> None:
+    def __init__(self, arrays: Arrays, state: State, tables: InterferenceTables | None) -> None:
         self._arrays = arrays
-        self._state = state
-        self._setup = setup
+        self._log = state.log
         self._tables = tables
-        self._of_task = {
-            TASK_READY: [observer.task_ready for observer in state.observers],
-            TASK_START: [observer.task_started for observer in state.observers],
-            TASK_COMPLETE: [observer.task_ended for observer in state.observers],
-        }
         record = arrays.state
-        record.is_watched, record.shows_rates = bool(state.observers), bool(state.rate_observers)
+        record.is_watched, record.shows_rates = state.log is not None, state.shows_rates
         record.happened_most = EVENTS_KEPT
-        arrays.put(
-            "happened", records(EVENTS_KEPT if state.observers else 0, layout.ARRAYS["happened"])
-        )
-        self._keep_rates(RATES_KEPT if state.rate_observers else 0)
+        arrays.put("happened", records(EVENTS_KEPT if state.log else 0, layout.ARRAYS["happened"]))
+        self._keep_rates(RATES_KEPT if state.shows_rates else 0)
 
     def _keep_rates(self, count: int) -> None:
         self._arrays.state.assigned_most = count
         self._arrays.put("assigned", records(count, layout.ARRAYS["assigned"]))
 
     def tell(self) -> None:
-        """Tell all that has been noted; make room for one event at least.
-
-        While it is told, the state's clock and count of events are those of what is told.
-        """
-        record, state = self._arrays.state, self._state
-        happened = self._arrays["happened"][: int(record.happened_count)].tolist()
-        assigned = iter(self._arrays["assigned"][: int(record.assigned_count)].tolist())
+        """Tell all that has been noted; make room for one event at least."""
+        record = self._arrays.state
+        happened = self._arrays["happened"][: int(record.happened_count)]
+        assigned = self._arrays["assigned"][: int(record.assigned_count)]
+        if self._log is not None:
+            self._log.events += happened.tolist()
+            self._log.rates |= self._rates(happened.moves, assigned)
         record.happened_count = record.assigned_count = 0
         if record.shows_rates and record.flows >= record.assigned_most:
             self._keep_rates(2 * int(record.flows) + 2)
-        events = int(record.events) - len(happened)
-        for number, (at_us, kind, what, moves) in enumerate(happened, events + 1):
-            state.now_us, state.events = at_us, number
-            self._tell_event(at_us, kind, what)
-            if moves:
-                self._tell_rates(at_us, kind, what, [next(assigned) for _ in range(moves)])
+        if self._log is not None:
+            self._log.tell()
 
-    def _tell_event(self, at_us: Instant, kind: int, number: int) -> None:
-        if kind in self._of_task:
-            node = self._state.tasks[number].node
-            for tell in self._of_task[kind]:
-                tell(at_us, number, node)
-        elif kind == TRANSFER_START:
-            self._tell_transfer(at_us, number)
-        elif kind == TRANSFER_COMPLETE:
-            for observer in self._state.observers:
-                observer.transfer_ended(at_us, number)
+    def _rates(self, moves: "np.ndarray[Any, np.dtype[np.int64]]", assigned: Record) -> Rates:
+        """Return what events moved, by their place, transfers in order."""
+        if not len(assigned):
+            return {}
+        event_of = np.repeat(np.arange(len(moves)), moves)
+        assigned = assigned[np.lexsort((assigned.transfer, event_of))]
+        names = ("transfer", "rate_MBps", "bottleneck", "flows")
+        transfers, rates_MBps, links, flows = (assigned[name].tolist() for name in names)
+        against = self._against(assigned)
+        contenders, hidden, factors = against or ((), (), ())
+        places = np.flatnonzero(moves)
+        ends = np.cumsum(moves[places]).tolist()
+        return {
+            place: (
+                transfers[first:end],
+                rates_MBps[first:end],
+                links[first:end],
+                flows[first:end],
+                against and (contenders[first:end], hidden[first:end], factors[first:end]),
+            )
+            for place, (first, end) in zip(places.tolist(), pairwise([0, *ends]), strict=True)
+        }
 
-    def _tell_transfer(self, at_us: Instant, number: int) -> None:
-        entry, tasks = self._setup.dependencies[number], self._state.tasks
-        source, target = tasks[entry.source].node, tasks[entry.target].node
-        route = self._setup.routes.route(source, target) or ()
-        for observer in self._state.observers:
-            observer.transfer_started(at_us, number, route, entry.size_MB)
-
-    def _tell_rates(
-        self, at_us: Instant, kind: int, number: int, assigned: Sequence[Assigned]
-    ) -> None:
-        cause = rate_cause_of(("start" if kind == TRANSFER_START else "finish", number))
-        columns = self._columns(sorted(assigned, key=TRANSFER_OF))
-        for observer in self._state.rate_observers:
-            observer.rate_columns_assigned(at_us, cause, columns)
-
-    def _columns(self, assigned: Sequence[Assigned]) -> RateColumns:
-        rates_MBps, transfers, links, flows, *against = zip(*assigned, strict=True)
+    def _against(self, assigned: Record) -> Against | None:
         if self._tables is None:
-            return transfers, rates_MBps, links, flows, [NO_COMPETITION] * len(links)
+            return None
         hidden_factors = self._tables.hidden_factors
-        competition = [
-            competition_of((contenders, hidden, hidden_factors[link][level]))
-            for link, contenders, hidden, level in zip(links, *against, strict=True)
-        ]
-        return transfers, rates_MBps, links, flows, competition
+        found = zip(assigned.bottleneck.tolist(), assigned.level.tolist(), strict=True)
+        factors = [hidden_factors[link][level] for link, level in found]
+        return assigned.contenders.tolist(), assigned.hidden.tolist(), factors

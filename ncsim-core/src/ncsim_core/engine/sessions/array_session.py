@@ -123,5 +123,6 @@ class ArraySession(TabledSession):
         return share_row.factor(contenders + 1), window
 
     @override
-    def _load_of(self, link: LinkIndex) -> int:
-        return int(self._load[link])
+    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
+        loads: list[int] = self._load[[*links]].tolist()
+        return loads

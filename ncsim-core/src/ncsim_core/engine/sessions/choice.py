@@ -9,7 +9,7 @@ from ncsim_core.contracts.interference_model import (
     Unaffected,
 )
 from ncsim_core.contracts.interference_tables import InterferenceTables
-from ncsim_core.engine.boundary import CheckedSession, asked
+from ncsim_core.engine.boundary import CheckedSession, CheckedTables, asked
 from ncsim_core.engine.sessions.links_in_use import LinksInUse
 from ncsim_core.engine.setup import Setup
 from ncsim_core.errors import PluginError
@@ -22,7 +22,7 @@ MAX_LINKS_OF_ROWS: Final = 150
 """Above, arrays are faster than rows of Python numbers; see docs/performance.md."""
 
 
-def session_of(setup: Setup) -> InterferenceSession | None:
+def session_of(setup: Setup) -> CheckedSession | None:
     """Return a fresh session for one run, ``None`` if no link ever affects another."""
     model = setup.models.interference
     who = setup.models.identity("interference_model")
@@ -33,9 +33,17 @@ def session_of(setup: Setup) -> InterferenceSession | None:
     tables = asked(who, model.tables)
     if tables is not None:
         check_tables(tables, len(setup.network.links), who)
-        return CheckedSession(session_for(model, tables), who)
+        return _checked(session_for(model, tables), who)
     session = asked(who, model.open_session)
     return None if isinstance(session, Unaffected) else CheckedSession(session, who)
+
+
+def _checked(session: InterferenceSession, who: ComponentIdentity) -> CheckedSession:
+    from ncsim_core.engine.sessions.tabled_session import TabledSession
+
+    if isinstance(session, TabledSession):
+        return CheckedTables(session, who)
+    return CheckedSession(session, who)
 
 
 def check_tables(tables: object, link_count: int, who: ComponentIdentity) -> None:

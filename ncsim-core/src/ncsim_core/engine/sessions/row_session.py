@@ -75,5 +75,5 @@ class RowSession(TabledSession):
         return links, changed
 
     @override
-    def _load_of(self, link: LinkIndex) -> int:
-        return self._load[link]
+    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
+        return [self._load[link] for link in links]

@@ -7,16 +7,11 @@ from typing import Final
 
 from typing_extensions import override
 
-from ncsim_core.contracts.interference_model import (
-    Competition,
-    InterferenceSession,
-    competition_of,
-)
+from ncsim_core.contracts.interference_model import Against, Competition, InterferenceSession
 from ncsim_core.engine.sessions.loads import Loads
 from ncsim_core.network import LinkIndex
 
 MAX_TOGGLED: Final = 10_000
-MAX_KNOWN: Final = 10_000
 
 
 class TabledSession(InterferenceSession):
@@ -30,11 +25,10 @@ class TabledSession(InterferenceSession):
         self._loads = loads
         self._active_mask = 0  # as of the last time that anybody asked
         self._toggled: list[LinkIndex] = []  # since then
-        self._known: dict[tuple[LinkIndex, int], Competition] = {}  # by link and active ones about
 
     @abstractmethod
-    def _load_of(self, link: LinkIndex) -> int:
-        """Return the load of an active link."""
+    def _loads_of(self, links: Sequence[LinkIndex]) -> list[int]:
+        """Return the loads of active links."""
 
     def _toggle(self, on: Sequence[LinkIndex], off: Sequence[LinkIndex]) -> None:
         """Note which links are switched, for the case that somebody asks about competition."""
@@ -52,22 +46,18 @@ class TabledSession(InterferenceSession):
 
     @override
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
+        return list(map(Competition._make, zip(*self.against(links), strict=True)))
+
+    def against(self, links: Sequence[LinkIndex]) -> Against:
+        """Return what each of ``links`` is up against now, as columns."""
         self._bring_mask_up_to_date()
-        loads, tables, active_mask = self._loads, self._loads.tables, self._active_mask
-        count_shift, units_mask, known = loads.count_shift, loads.units_mask, self._known
-        told = []
-        for link in links:
-            affecting = active_mask & loads.affecting_mask(link)
-            competition = known.get((link, affecting))  # what it is up against follows from these
-            if competition is None:
-                load = self._load_of(link)
-                contenders, hidden_units = load >> count_shift, load & units_mask
-                level = bisect_left(tables.limits[link], hidden_units)
-                hidden = affecting.bit_count() - contenders
-                competition = competition_of(
-                    (contenders, hidden, tables.hidden_factors[link][level])
-                )
-                if len(known) < MAX_KNOWN:
-                    known[link, affecting] = competition
-            told.append(competition)
-        return told
+        active_mask, mask_of = self._active_mask, self._loads.affecting_mask
+        count_shift, units_mask = self._loads.count_shift, self._loads.units_mask
+        limits, factor_of = self._loads.tables.limits, self._loads.tables.hidden_factors
+        contenders, hidden, factors = [], [], []
+        for link, load in zip(links, self._loads_of(links), strict=True):
+            conflicting = load >> count_shift
+            contenders.append(conflicting)
+            hidden.append((active_mask & mask_of(link)).bit_count() - conflicting)
+            factors.append(factor_of[link][bisect_left(limits[link], load & units_mask)])
+        return contenders, hidden, factors

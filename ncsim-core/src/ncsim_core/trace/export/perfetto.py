@@ -14,8 +14,8 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Final, TypeAlias
 
+from ncsim_core.trace.encoding import to_json
 from ncsim_core.trace.run_trace import RunTask, RunTrace, RunTransfer
-from ncsim_core.trace.writer import to_json
 
 TraceEvent: TypeAlias = dict[str, object]
 

@@ -9,6 +9,7 @@ of null.
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from ncsim_core.trace.encoding import to_json
 from ncsim_core.trace.loading import load_run
 from ncsim_core.trace.reader import read_trace
 from ncsim_core.trace.records import (
@@ -21,7 +22,6 @@ from ncsim_core.trace.records import (
     TransferStarted,
 )
 from ncsim_core.trace.run_trace import RunTrace, RunTransfer
-from ncsim_core.trace.writer import to_json
 from ncsim_core.units import s_from_us
 
 PUBLISHED_VERSION = "1.0"
