@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from ncsim_core.engine.observer import Observer
+from ncsim_core.engine.observer import Watcher
 from ncsim_core.engine.simulation import Simulation
 from ncsim_core.generators.paper import paper_dag, paper_grid
 from ncsim_core.scenario.assembly import Assembly, assemble
@@ -47,7 +47,7 @@ EVENTS = (10_000, 100_000, 1_000_000)
 EVENTS_PER_TASK = 6.7
 
 
-def cpu_s(assembly: Assembly, observers: Callable[[], Iterable[Observer]] = tuple) -> float:
+def cpu_s(assembly: Assembly, observers: Callable[[], Iterable[Watcher]] = tuple) -> float:
     """Return the CPU time of one run."""
     began_s = time.process_time()
     Simulation(assembly.network, assembly.models, observers=observers()).run()

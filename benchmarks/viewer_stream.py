@@ -15,6 +15,8 @@ from contextlib import closing
 from http.client import HTTPConnection
 from pathlib import Path
 
+from ncsim_core.engine.events import TASK_COMPLETE, TASK_READY
+from ncsim_core.engine.observer import Batch
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.output import atomic_output_folder
 from ncsim_core.trace.writer import TraceWriter
@@ -30,6 +32,7 @@ SLACK = 2
 """For shared machines."""
 FIRST_us = now_us()
 RUN = "live"
+AT_A_TIME = 100
 
 
 def write(folder: str, seconds: float, per_second: int) -> None:
@@ -41,11 +44,10 @@ def write(folder: str, seconds: float, per_second: int) -> None:
         simulation = worked_example(writer)
         simulation.step()
         started_s = time.monotonic()
-        for number in range(int(seconds * per_second)):
-            if number % 100 == 0:
-                time.sleep(max(0.0, started_s + number / per_second - time.monotonic()))
-            put = writer.task_ready if number % 2 else writer.task_ended
-            put(now_us(), number, 0)  # type: ignore[arg-type] # plain numbers do
+        for first in range(0, int(seconds * per_second), AT_A_TIME):
+            time.sleep(max(0.0, started_s + first / per_second - time.monotonic()))
+            kinds = (TASK_READY, TASK_COMPLETE) * (AT_A_TIME // 2)
+            writer.events_happened(Batch([(now_us(), kind, 0, 0) for kind in kinds], {}))
         simulation.run()
 
 

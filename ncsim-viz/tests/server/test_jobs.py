@@ -41,13 +41,13 @@ def slowly():
     from ncsim_core.cli.main import main
     from ncsim_core.trace.writer import TraceWriter
 
-    task_ended = TraceWriter.task_ended
+    events_happened = TraceWriter.events_happened
 
-    def slow(*given):
-        task_ended(*given)
-        time.sleep(0.01)
+    def slow(writer, batch):
+        events_happened(writer, batch)
+        time.sleep(0.002 * len(batch.events))
 
-    TraceWriter.task_ended = slow
+    TraceWriter.events_happened = slow
     main()
 
 def quiet():
