@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray, mW_from_dBm
+from ncsim_wifi.spatial.near import NOBODY
+from ncsim_wifi.spatial.overlap import half_kill
 from ncsim_wifi.spatial.relations import Hostile, impossible_subsets, subsets_of
 from ncsim_wifi.spatial.scene import Scene
 from ncsim_wifi.spatial.sums import halved, halving_sums
@@ -71,14 +73,14 @@ class GateMasks(NamedTuple):
     Args:
         gate: Number of the gate; those left out are open.
         row: The energy set of the station that is silenced.
-        subsets: Whether it is one with the other party of the relation, and without other
-            hostile stations, that leaves the channel free; one of all these; one to compare with
-            that leaves it free; one of all these; shape (gates, subsets, 4).
+        subsets: How far it counts as one with the other party of the relation that leaves the
+            channel free; as one of all with it; as one without it that leaves it free; as one of
+            all without; shape (gates, subsets, 4).
     """
 
     gate: IntArray
     row: IntArray
-    subsets: BoolArray
+    subsets: FloatArray
 
 
 def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile) -> GateMasks:
@@ -91,21 +93,43 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile) -> GateMasks:
         if len(sets.station)
         else np.zeros(0, np.int64)
     )
-    relation = gate % max(1, len(hostile))
-    member = sets.member[row[gate]]
-    is_hostile = np.zeros((len(scene.links), scene.station_count), np.bool_)
-    is_hostile[hostile.link, hostile.station] = True
-    is_rival = is_hostile[hostile.link[relation][:, None], member] & (member >= 0)
-    is_rival &= member != hostile.station[relation][:, None]
     held = sets.subsets.T.astype(np.float64)
-    it = (member == other[gate][:, None]).astype(np.float64) @ held > 0.0
-    rid_of_others = is_rival.astype(np.float64) @ held == 0.0
+    it = (sets.member[row[gate]] == other[gate][:, None]).astype(np.float64) @ held > 0.0
     free = ~sets.blocks[row[gate]]
-    with_it, without = it & rid_of_others, ~it & rid_of_others
-    masks = np.empty((*free.shape, KINDS), np.bool_)
-    for kind, mask in enumerate((with_it & free, with_it, without & free, without)):
-        masks[:, :, kind] = mask
+    counts = _left_by_rivals(scene, sets, hostile, gate, row[gate])
+    masks = np.empty((*free.shape, KINDS))
+    for kind, mask in enumerate((it & free, it, ~it & free, ~it)):
+        masks[:, :, kind] = mask * counts
     return GateMasks(gate, row[gate], masks)
+
+
+def _left_by_rivals(
+    scene: Scene, sets: EnergySets, hostile: Hostile, gate: IntArray, row: IntArray
+) -> FloatArray:
+    """Return what frames survive the rivals in each subset, half overlapped by each.
+
+    At senders only rivals looked at earlier count, so that the gates of a link multiply to that of
+    all its relations at once.
+
+    Args:
+        scene: The active links.
+        sets: Energy sets.
+        hostile: Hidden relations.
+        gate: Numbers of the gates.
+        row: Their energy sets.
+
+    Returns:
+        Shape (gates, subsets).
+    """
+    relation, member = gate % max(1, len(hostile)), sets.member[row]
+    number = hostile.numbers(len(scene.links), scene.station_count)
+    rival = np.where(member >= 0, number[hostile.link[relation][:, None], member], NOBODY)
+    at_sender = (gate < len(hostile))[:, None]
+    counts = (rival >= 0) & (rival != relation[:, None])
+    counts &= ~at_sender | (rival < relation[:, None])
+    kill = np.where(hostile.is_strong, 1.0, half_kill(hostile.delta[:, 0]))
+    spared = np.where(counts, 1.0 - kill[rival], 1.0)
+    return np.asarray(np.where(sets.subsets, spared[:, None, :], 1.0).prod(axis=2))
 
 
 class Silencing(NamedTuple):

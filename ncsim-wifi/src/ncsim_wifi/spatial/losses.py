@@ -13,6 +13,7 @@ from ncsim_wifi.spatial.attempts import GAUSS_AT, Exchange
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.elementary import exp, log
 from ncsim_wifi.spatial.gaps import Interferers, Survival, Windows, survival, windows_of
+from ncsim_wifi.spatial.groups import Members, in_company, in_company_by_cts, met_at_once
 from ncsim_wifi.spatial.handshake import BEFORE_CTS_us, NAV_TIMEOUT_us
 from ncsim_wifi.spatial.overlap import (
     LARGEST_KILL,
@@ -186,9 +187,8 @@ def hidden_loss(
     time = traffic.stages[other] * traffic.cycle_us[other]
     alone = time / row_sums(time)[:, None]
     if hostile.has_several:
-        in_group = hostile.group_sums(phi * row_sums(alone * survives))[:, None]
-        several = hostile.is_member_of_several[:, None]
-        survives = np.where(several, share * survives + (1.0 - share) * in_group, survives)
+        hit = 1.0 - row_sums(alone * missed)
+        survives = _in_groups(statics, traffic, met, Members(phi, share, alone, survives), hit)
     earlier = conditioned_on(statics.rivals.earlier, on, spared)
     correction = _correction(scene, statics, kill, earlier, later)
     return HiddenLoss(
@@ -202,6 +202,18 @@ def hidden_loss(
         correction,
         grows,
     )
+
+
+def _in_groups(
+    statics: Statics, traffic: Traffic, met: Interferers, members: Members, hit: FloatArray
+) -> FloatArray:
+    """Return s_k of each relation with its whole group (MODEL 3.8)."""
+    hostile = statics.hostile
+    if statics.handshakes is not None:
+        return in_company_by_cts(hostile, members)
+    on_air_us, cycle_us = traffic.times.on_air_us[hostile.station], met.busy_us / met.sum_on
+    number = met_at_once(statics.window_us, on_air_us, cycle_us, hit)
+    return in_company(hostile, members, number)
 
 
 def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "GroupState":

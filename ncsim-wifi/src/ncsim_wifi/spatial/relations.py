@@ -97,6 +97,17 @@ class Hostile:
         """Return whether any interferer may collide with another that harms the link."""
         return bool((self.partner_kill != 0.0).any())
 
+    def numbers(self, links: int, stations: int) -> IntArray:
+        """Return the number of the relation of each link with each station, -1 if there is none.
+
+        Args:
+            links: Number of links.
+            stations: Number of stations.
+        """
+        number = np.full((links, stations), -1)
+        number[self.link, self.station] = np.arange(len(self))
+        return number
+
     def group_sums(self, values: FloatArray) -> FloatArray:
         """Return for each relation the sum of its group."""
         if not self.has_several:

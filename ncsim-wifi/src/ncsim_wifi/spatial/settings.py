@@ -50,7 +50,7 @@ class Approximations:
         stage_gain: How far stages move towards their new value in a step.
         gain: The same for everything else.
         energy_tail_us: Calibrated: how long summed power keeps a station silent after a frame.
-        ack_weight: Calibrated: harm of acknowledgements.
+        ack_weight: Calibrated: harm of acknowledgements under RTS/CTS.
         overlap_scale: Calibrated: length of the overlap in which a helper counts.
         ack_extension_kill: Calibrated: harm from which an acknowledgement prolongs its frame.
         helper_cycle_us: Calibrated: how long summed power protects a frame.

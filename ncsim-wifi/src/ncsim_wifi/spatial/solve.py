@@ -9,7 +9,7 @@ import numpy as np
 
 from ncsim_wifi.mac.timing import RTS_us, SLOT_us
 from ncsim_wifi.quantities import FloatArray
-from ncsim_wifi.spatial.acks import ack_survival, heard_answers
+from ncsim_wifi.spatial.acks import Overlapped, answers_survival, heard_answers
 from ncsim_wifi.spatial.artefacts import Senders, field_survival
 from ncsim_wifi.spatial.attempts import Attempts, Contenders, Exchange, attempts_of
 from ncsim_wifi.spatial.backoff import (
@@ -307,26 +307,45 @@ class FixedPoint:
 
     def _ack_survival(self, traffic: Traffic, hidden: HiddenLoss | None) -> FloatArray:
         """Return what acknowledgements of hidden links leave of frames (MODEL 3.9)."""
-        scene, acks, hostile = self._scene, self._statics.acks, self._statics.hostile
+        scene, acks = self._scene, self._statics.acks
+        kill = self._kill_while_sending(hidden)
+        self._heard = self._heard_answers(traffic, kill)
+        if not len(acks.link):
+            return self._heard
+        sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
+        if scene.settings.rts_cts:
+            sent = sent * 2.0  # each data frame is answered by a CTS before and an ACK after
+        met = self._overlapped(hidden, kill)
+        spared = answers_survival(acks, sent[acks.other], met)
+        return self._heard * products_by(acks.link, np.maximum(1e-12, spared), len(scene.links))
+
+    def _kill_while_sending(self, hidden: HiddenLoss | None) -> FloatArray:
+        """Return the part of frames that each relation destroys while its station sends."""
+        hostile = self._statics.hostile
+        if hidden is None:
+            return np.zeros(0)
+        if not self._scene.settings.rts_cts:
+            return hidden.kill
+        return np.where(hostile.by_cts_only, self._statics.alone_kill, hidden.kill)
+
+    def _heard_answers(self, traffic: Traffic, kill: FloatArray) -> FloatArray:
+        """Return the part of acknowledgements that senders receive (MODEL 3.9)."""
+        scene, hostile, sending = self._scene, self._statics.hostile, traffic.sending
         spared = np.ones((len(scene.links), scene.station_count))
-        if hidden is not None:
-            kill = hidden.kill
-            if scene.settings.rts_cts:
-                kill = np.where(hostile.by_cts_only, self._statics.alone_kill, kill)
-            spared[hostile.link, hostile.station] = 1.0 - kill
-        sending = traffic.sending
+        spared[hostile.link, hostile.station] = 1.0 - kill
         handshakes = self._statics.handshakes
         if handshakes is not None:  # a CTS stops the sender too
             part = (self._attempts * self._answered)[:, None] * handshakes.silenced
             sending = sending * (1.0 - sums_by(scene.station, part, scene.station_count)).T
-        heard = heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
-        self._heard = heard
-        if not len(acks.link):
-            return heard
-        sent = traffic.rate_per_us[scene.station] * self._attempts * (1.0 - self._loss)
-        if scene.settings.rts_cts:
-            sent = sent * 2.0  # each data frame is answered by a CTS before and an ACK after
-        window_us = scene.protected_us[acks.link] + scene.ack_us[acks.other]
-        kill = acks.kill * spared[acks.link, scene.station[acks.other]]
-        survives = np.maximum(1e-12, ack_survival(window_us * sent[acks.other], kill))
-        return heard * products_by(acks.link, survives, len(scene.links))
+        return heard_answers(self._statics.deaf_to_ack, sending[scene.station] * spared)
+
+    def _overlapped(self, hidden: HiddenLoss | None, kill: FloatArray) -> Overlapped:
+        """Return what becomes of frames that relations may overlap, on average over stages."""
+        every, settings = np.ones(len(kill)), self._scene.settings
+        if hidden is None:
+            return Overlapped(every, every, every > 1.0, every)
+        hit, survives = (row_sums(hidden.alone * each) for each in (hidden.hit, hidden.survives))
+        if settings.rts_cts:
+            return Overlapped(hit, survives, every > 1.0, 1.0 - kill)
+        is_prolonged = kill >= settings.approximations.ack_extension_kill
+        return Overlapped(hit, survives, is_prolonged, every)

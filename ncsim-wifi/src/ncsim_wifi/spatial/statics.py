@@ -131,7 +131,7 @@ def statics_of(scene: Scene) -> Statics:
         same_slot_loss(scene, near.noise_mW),
         -np.expm1(-hazards),
         AnswersOf(*np.nonzero(scene.link_of_station[hostile.station])),
-        ack_relations(scene, hazards, is_hidden & ~scene.senses[:, scene.station]),
+        ack_relations(scene, hostile, hazards, is_hidden & ~scene.senses[:, scene.station]),
         deaf_to_ack(scene),
         *_summed_power(scene, hostile),
     )
@@ -176,8 +176,7 @@ def _rivals(scene: Scene, hostile: Hostile) -> Rivals:
 
 def _helper_relation(scene: Scene, hostile: Hostile) -> IntArray:
     """Return the relation of each helper with the link it helps to harm, -1 if it has none."""
-    number = np.full((len(scene.links), scene.station_count), -1)
-    number[hostile.link, hostile.station] = np.arange(len(hostile))
+    number = hostile.numbers(len(scene.links), scene.station_count)
     some = hostile.with_helpers
     helper = hostile.helper[some]
     return np.where(helper >= 0, number[hostile.link[some][:, None], helper], -1)

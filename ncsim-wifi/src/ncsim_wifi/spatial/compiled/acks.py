@@ -9,9 +9,12 @@ import numpy as np
 from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
+from ncsim_wifi.spatial.acks import LEAST_PART, MOST_ANSWERS, Overlapped
+from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.compiled.collisions import multiply
 from ncsim_wifi.spatial.compiled.state import State, Traffic
 from ncsim_wifi.spatial.compiled.tables import Air, Constants, Records
+from ncsim_wifi.spatial.losses import HiddenLoss
 
 
 @inlined
@@ -20,6 +23,7 @@ def lose_answers(
     air: Air,
     state: State,
     traffic: Traffic,
+    met: Overlapped,
     spared: FloatArray,
     base: FloatArray,
 ) -> FloatArray:
@@ -35,7 +39,7 @@ def lose_answers(
         sent[link] = rate_per_us * own.attempts * (1.0 - own.loss)
         if constants.rts_cts:
             sent[link] = sent[link] * 2.0
-    _spare_acks(air, spared, sent, left)
+    _spare_acks(air.acks, met, sent, left)
     multiply(base, left)
     return heard
 
@@ -87,22 +91,61 @@ def _fill_heard(air: Air, sending: FloatArray, spared: FloatArray, heard: FloatA
 
 
 @inlined
-def _spare_acks(air: Air, spared: FloatArray, sent: FloatArray, survives: FloatArray) -> None:
+def overlapped(constants: Constants, relations: Records, loss: HiddenLoss) -> Overlapped:
+    """Return what becomes of frames that relations may overlap; the last is for want of one."""
+    count = len(relations)
+    hit, survives, left = np.ones((3, count + 1))
+    prolongs = np.zeros(count + 1, np.bool_)
+    for at in range(count):
+        own = relations[at]
+        hit[at] = loss.alone[at, 0] * loss.hit[at, 0]
+        survives[at] = loss.alone[at, 0] * loss.survives[at, 0]
+        for k in range(1, STAGES):
+            hit[at] = hit[at] + loss.alone[at, k] * loss.hit[at, k]
+            survives[at] = survives[at] + loss.alone[at, k] * loss.survives[at, k]
+        if constants.rts_cts:
+            left[at] = 1.0 - (own.alone_kill if own.by_cts_only else loss.kill[at])
+        else:
+            prolongs[at] = loss.kill[at] >= constants.ack_extension_kill
+    return Overlapped(hit, survives, prolongs, left)
+
+
+@inlined
+def none_overlapped() -> Overlapped:
+    """Return the same without relations."""
+    every = np.ones(1)
+    return Overlapped(every, every, np.zeros(1, np.bool_), every)
+
+
+@inlined
+def _spare_acks(acks: Records, met: Overlapped, sent: FloatArray, survives: FloatArray) -> None:
     """Multiply by what acknowledgements of hidden links leave of frames.
 
     Args:
-        air: Links and stations.
-        spared: Part of the data of each link that a station does not destroy.
+        acks: Who suffers from whose.
+        met: What becomes of overlapped frames, by hidden relation.
         sent: Acknowledgements per time of each link.
         survives: What is multiplied.
     """
     product = np.ones(len(survives))
-    for ack in air.acks:
-        link, other = ack.one, ack.two
-        window_us = air.links[link].protected_us + air.links[other].ack_us
-        kill = ack.kill * spared[link, air.links[other].station]
-        product[link] *= max(1e-12, _ack_survival(window_us * sent[other], kill))
+    for ack in acks:
+        data, rate_per_us = ack.data, sent[ack.two]
+        if met.prolongs[data]:
+            sent_part = min(1.0, _of_survivors(met, ack.back) / max(met.hit[ack.back], LEAST_PART))
+            number = rate_per_us * ack.later_us / max(met.hit[data], LEAST_PART) * sent_part
+            among = _of_survivors(met, data)
+            left = 1.0 - among + among * _ack_survival(min(number, MOST_ANSWERS), ack.kill)
+        else:
+            left = _ack_survival(rate_per_us * ack.window_us, ack.kill * met.left[data])
+        product[ack.one] *= max(1e-12, left)
     multiply(survives, product)
+
+
+@inlined
+def _of_survivors(met: Overlapped, at: int) -> float:
+    """Return the part of frames surviving a relation that it has overlapped."""
+    hit, survives = max(met.hit[at], LEAST_PART), max(met.survives[at], LEAST_PART)
+    return max(0.0, survives - (1.0 - hit)) / survives
 
 
 @inlined

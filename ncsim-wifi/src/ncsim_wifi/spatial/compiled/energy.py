@@ -80,8 +80,7 @@ def _open_gates(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
         for held in range(half):
             one, two = row[held], row[half + held]
             for kind in range(KINDS):
-                first = one if subsets[held, kind] else 0.0
-                second = two if subsets[half + held, kind] else 0.0
+                first, second = subsets[held, kind] * one, subsets[half + held, kind] * two
                 terms[held * KINDS + kind] = first + second
         width = len(terms) // 2
         while width >= KINDS:

@@ -13,11 +13,13 @@ from ncsim_wifi.spatial.attempts import GAUSS_AT
 from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.compiled.elementary import exp, log
 from ncsim_wifi.spatial.compiled.gaps import survival
+from ncsim_wifi.spatial.compiled.groups import share_groups, share_groups_by_cts
 from ncsim_wifi.spatial.compiled.interferers import groups_of, interferers_of, seen_us_of
 from ncsim_wifi.spatial.compiled.overlap import helped_kill
 from ncsim_wifi.spatial.compiled.state import State, Traffic
 from ncsim_wifi.spatial.compiled.tables import Constants, Helpers, Hidden, Records, Tables
 from ncsim_wifi.spatial.gaps import Survival, Windows
+from ncsim_wifi.spatial.groups import Members
 from ncsim_wifi.spatial.losses import HiddenLoss
 from ncsim_wifi.spatial.overlap import LARGEST_KILL, LARGEST_ON, LEAST_KILL, LEAST_ON
 
@@ -57,7 +59,11 @@ def hidden_loss(
     found = survival(met, _windows(constants, air.links, relations, harm, gates))
     survives, missed, answered = _fates(constants, relations, found)
     alone = _alone(relations, state, traffic)
-    _share_groups(hidden, phi, met.share, alone, survives)
+    members = Members(phi, met.share, alone, survives)
+    if constants.rts_cts:
+        share_groups_by_cts(hidden, members)
+    else:
+        share_groups(hidden, traffic, met, members, missed)
     _clip(survives, answered, missed)
     correction = _correction(hidden, harm, len(air.links))
     return HiddenLoss(
@@ -226,29 +232,6 @@ def _alone(relations: Records, state: State, traffic: Traffic) -> FloatArray:
         for k in range(STAGES):
             alone[at, k] /= total
     return alone
-
-
-@inlined
-def _share_groups(
-    hidden: Hidden,
-    phi: FloatArray,
-    share: FloatArray,
-    alone: FloatArray,
-    survives: FloatArray,
-) -> None:
-    """Mix what survives members of a group by how likely each is the one that overlaps."""
-    relations = hidden.relations
-    in_group = np.zeros(len(hidden.link_of_group))
-    for at in range(len(phi)):
-        mean = 0.0
-        for k in range(STAGES):
-            mean = mean + alone[at, k] * survives[at, k]
-        in_group[relations[at].group] += phi[at] * mean
-    for at in range(len(phi)):
-        if relations[at].has_company:
-            for k in range(STAGES):
-                rest = (1.0 - share[at, k]) * in_group[relations[at].group]
-                survives[at, k] = share[at, k] * survives[at, k] + rest
 
 
 @inlined

@@ -43,6 +43,7 @@ MEETING = layout(
 OTHER = layout(i8="link station group", f8="harm")
 PAIR = layout(i8="one two")
 HARM = layout(i8="one two", f8="kill")
+ACK = layout(i8="one two data back", f8="kill window_us later_us")
 HELPED = layout(i8="relation own station", f8="protected_us")
 RELATION = np.dtype(
     [
@@ -86,7 +87,8 @@ class Air(NamedTuple):
         graph: Components of the sensing graph.
         others: Harmful stations beyond the nearest, records ``OTHER``.
         link_of_group: The link of each group of these.
-        acks: Records ``HARM``: the link that suffers, the one whose acknowledgements do harm.
+        acks: Records ``ACK``: the link that suffers, the one whose acknowledgements do harm; see
+            ``AckRelations``.
         spoilt: Who may begin unawares, under RTS/CTS; see ``Unread``.
         grid: ln h of all schemes, one behind the other.
     """
@@ -216,7 +218,17 @@ def _air(scene: Scene, statics: Statics) -> Air:
             harm=others.harm,
         ),
         others.link_of_group,
-        records(len(acks.link), HARM, one=acks.link, two=acks.other, kill=acks.kill),
+        records(
+            len(acks.link),
+            ACK,
+            one=acks.link,
+            two=acks.other,
+            data=acks.data,
+            back=acks.back,
+            kill=acks.kill,
+            window_us=acks.window_us,
+            later_us=acks.later_us,
+        ),
         np.zeros((0, 0, 0), np.bool_) if handshakes is None else in_rows(handshakes.unread.spoilt),
         hazard_grid().reshape(-1),
     )
