@@ -1,10 +1,14 @@
 """Occupancy, belief, chains and sums against plain ways of computing them."""
 
+from itertools import product
+
 import numpy as np
 import pytest
+from ncsim_wifi.spatial.acks import AckRelations, Overlapped, answers_survival
 from ncsim_wifi.spatial.belief import clique_belief
 from ncsim_wifi.spatial.chains import STAGES, ChainRates, stationary
 from ncsim_wifi.spatial.gaps import power_sums
+from ncsim_wifi.spatial.groups import Members, in_company
 from ncsim_wifi.spatial.hazard import hazard, hazard_table
 from ncsim_wifi.spatial.occupancy import (
     exact_occupancy,
@@ -13,6 +17,7 @@ from ncsim_wifi.spatial.occupancy import (
     set_table,
 )
 from ncsim_wifi.spatial.overlap import joint_kill
+from ncsim_wifi.spatial.relations import Hostile
 from ncsim_wifi.spatial.relay import maximal_cliques
 
 
@@ -99,6 +104,53 @@ def test_joint_kill_is_the_mean_over_all_sets_of_helpers():
         ]
         expected = np.dot(weights, kill[relation, 0]) / sum(weights)
         assert found[relation, stage] == pytest.approx(expected)
+
+
+def group_of(count):
+    """Return relations of one link whose interferers exclude each other."""
+    every = np.zeros(count, np.int64)
+    return Hostile(every, np.arange(count), *[every[:, None]] * 4, every, *[every] * 4)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_frames_that_overlap_several_of_a_group_survive_each(number):
+    phi, each = np.array([0.5, 0.3, 0.2]), np.array([0.9, 0.4, 0.05])  # survival of one overlap
+
+    of_all_alike = np.repeat(each[:, None] ** number, STAGES, axis=1)
+    share, alone = np.repeat(phi[:, None], STAGES, axis=1), np.full((3, STAGES), 1 / STAGES)
+    found = in_company(
+        group_of(3), Members(phi, share, alone, of_all_alike), np.full(3, float(number))
+    )
+
+    series = product(range(3), repeat=number)
+    expected = sum(np.prod(phi[list(who)] * each[list(who)]) for who in series)
+    assert found == pytest.approx(np.full((3, STAGES), expected))
+
+
+def answered(*, hit, survives, back, prolongs=True, kill=1.0, number=40.0):
+    """Return what one station's acknowledgements leave of a link; relation 1 is its own."""
+    one = np.ones(1)
+    ack = AckRelations(*np.zeros((2, 1), int), kill * one, one, one, np.array([0]), np.array([1]))
+    met = Overlapped(
+        np.array([hit, back[0]]), np.array([survives, back[1]]), np.full(2, prolongs), np.ones(2)
+    )
+    return answers_survival(ack, number * one, met)[0]
+
+
+def test_acknowledgements_spare_frames_that_overlap_no_data():
+    # 0.4 overlap nothing, 0.3 survive the overlap and then die of what answers it
+    assert answered(hit=0.6, survives=0.7, back=(0.5, 0.9)) == pytest.approx(0.4 / 0.7)
+    assert answered(hit=0.6, survives=0.4, back=(0.5, 0.9)) == pytest.approx(1.0)
+
+
+def test_data_that_the_overlap_destroys_are_not_answered():
+    assert answered(hit=0.6, survives=0.7, back=(0.5, 0.5)) == pytest.approx(1.0)
+
+
+def test_acknowledgements_that_prolong_nothing_fall_into_any_frame():
+    met = {"hit": 0.6, "survives": 0.7, "back": (0.5, 0.5), "prolongs": False}
+
+    assert answered(**met, kill=0.25, number=2.0) == pytest.approx(0.75**2)
 
 
 def test_hazard_meets_every_point_of_the_table():

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from ncsim_wifi.mac.efficiency import station_goodput_MBps
 from ncsim_wifi.mac.timing import AxTiming
 from ncsim_wifi.phy.mcs import read_table
+from ncsim_wifi.spatial.energy import silenced_by
 from ncsim_wifi.spatial.plant import Plant
 from ncsim_wifi.spatial.saturated import saturated_goodputs_MBps
 from ncsim_wifi.spatial.scene import scene_of
@@ -141,6 +142,24 @@ def test_an_rts_that_is_captured_does_not_mind_a_later_start():
 
     assert fatal_us((30.0, 0.0))[0] == 0.0
     assert fatal_us((50.0, 0.0))[0] > 0.0
+
+
+def test_gates_of_a_link_multiply_to_what_sensing_two_together_leaves():
+    """Either is too weak for the sender to sense; both together silence it."""
+    pair = plant([(0, 0), (80, 0), (-80, 0)], [(0, 30), (110, 0), (-110, 0)])
+    statics = statics_of(scene_of(pair, range(3)))
+    on = np.full(statics.energy.member.shape, 1e-9)
+    row = statics.energy.row_of[0]
+    one, two = 0.5, 0.3
+    on[row, :2] = one, two
+
+    gates = silenced_by(statics.silencing, on).before[statics.hostile.link == 0]
+
+    met = statics.hostile.station[statics.hostile.link == 0]
+    part = np.where(met == statics.energy.member[row, 0], one, two)
+    off = (1 - part) / (1 - part + part * gates)
+    assert len(gates) == 2
+    assert off.prod() == pytest.approx((1 - one) * (1 - two) / (1 - one * two), rel=1e-3)
 
 
 def test_hidden_pair_gets_what_joint_chains_give_and_not_what_independence_gives():

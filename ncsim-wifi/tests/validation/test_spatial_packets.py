@@ -9,11 +9,16 @@ from ncsim_wifi.validation.spatial_packets import (
 )
 
 STATED_MEDIAN = {
-    "random_dev": 0.16,
+    "random_dev": 0.12,
     "random_new": 0.12,
     "random_unseen": 0.12,
 }  # docs/csma-spatial.md
-STATED_ERROR = {"four_five_links": 0.06, "random_dev": 0.112, "random_new": 0.096}
+STATED_ERROR = {
+    "four_five_links": 0.057,
+    "random_dev": 0.09,
+    "random_new": 0.094,
+    "random_unseen": 0.105,
+}
 
 
 @pytest.mark.parametrize("family", ACCEPTED_ERROR)

@@ -23,23 +23,31 @@ def lose_answers(
     air: Air,
     state: State,
     traffic: Traffic,
-    met: Overlapped,
-    spared: FloatArray,
+    data: tuple[Overlapped, FloatArray],
     base: FloatArray,
 ) -> FloatArray:
-    """Multiply by what acknowledgements leave; return how many of their own senders receive."""
+    """Multiply by what acknowledgements leave; return how many of their own senders receive.
+
+    Args:
+        constants: Settings.
+        air: Links and stations.
+        state: Attempts and losses.
+        traffic: What stations do.
+        data: What becomes of overlapped frames, and what of each link a station does not destroy.
+        base: What is multiplied.
+    """
     sending = traffic.sending
     if constants.rts_cts:
         sending = _not_stopped(air, state, sending)
     heard, sent = np.empty(len(base)), np.empty(len(base))
-    _fill_heard(air, sending, spared, heard)
+    _fill_heard(air, sending, data[1], heard)
     left = heard.copy()
     for link in range(len(base)):
         own, rate_per_us = state.links[link], traffic.rate_per_us[air.links[link].station]
         sent[link] = rate_per_us * own.attempts * (1.0 - own.loss)
         if constants.rts_cts:
             sent[link] = sent[link] * 2.0
-    _spare_acks(air.acks, met, sent, left)
+    _spare_acks(air.acks, data[0], sent, left)
     multiply(base, left)
     return heard
 
@@ -145,7 +153,8 @@ def _spare_acks(acks: Records, met: Overlapped, sent: FloatArray, survives: Floa
 def _of_survivors(met: Overlapped, at: int) -> float:
     """Return the part of frames surviving a relation that it has overlapped."""
     hit, survives = max(met.hit[at], LEAST_PART), max(met.survives[at], LEAST_PART)
-    return max(0.0, survives - (1.0 - hit)) / survives
+    part: float = max(0.0, survives - (1.0 - hit)) / survives
+    return part
 
 
 @inlined

@@ -120,13 +120,13 @@ def _success_by_stage(tables: Tables, state: State, traffic: Traffic, number: in
     gates = gates_of(constants, tables.energy, hidden.relations, state, traffic)
     spared = np.ones((len(air.links), len(air.senses)))
     if not len(hidden.relations):
-        lose_answers(constants, air, state, traffic, none_overlapped(), spared, base)
+        lose_answers(constants, air, state, traffic, (none_overlapped(), spared), base)
         return _evenly(base)
     loss = hidden_loss(tables, state, traffic, gates)
     partner_collisions(air, hidden.relations, state, traffic, gates[1], base)
     fill_spared(constants, hidden.relations, loss.kill, spared)
     met = overlapped(constants, hidden.relations, loss)
-    heard = lose_answers(constants, air, state, traffic, met, spared, base)
+    heard = lose_answers(constants, air, state, traffic, (met, spared), base)
     known, sent = hidden.chain_of[: state.known[0]], (loss.survives, loss.grows)
     success, parts = _success(hidden.relations, base, loss, sent, (known, state.given))
     with_chains = number < STEPS_WITH_CHAINS or number % 2 == 0
