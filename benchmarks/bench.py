@@ -91,10 +91,14 @@ def _engine_lines() -> Iterator[Line]:
                 TARGETS_s.get((form, size, tasks)),
                 is_pure=form in ("none", "pure"),
             )
+    share = r": (\d+) % of it"
     for model in ("none", "csma_bianchi"):
-        command = ("engine.py", "trace_share", "20", "1000", model)
-        name = f"trace: share of a run, {model}, 20x20 x 1,000"
-        yield Line(name, command, r": (\d+) % of it", 30, "%")
+        for size in (5, 20):
+            command = ("engine.py", "trace_share", str(size), "1000", model)
+            name = f"trace: share of a run, {model}, {size}x{size} x 1,000"
+            yield Line(name, command, share, 30, "%")
+    command = ("engine.py", "long_run", "100000")
+    yield Line("trace: share of a run, none, 100,000 events", command, share, 30, "%")
 
 
 def _long_lines() -> Iterator[Line]:
@@ -105,6 +109,7 @@ def _long_lines() -> Iterator[Line]:
     yield Line("length: 1,000,000 events, each", command, each, unit="us", is_long=True)
     name = "length: 1,000,000 events, trace streamed"
     yield Line(name, command, r"with trace\s+([\d.]+) s", 15, is_long=True)
+    yield Line(f"{name}: its share", command, r": (\d+) % of it", 30, "%", is_long=True)
     yield Line(f"{name}: memory", command, r"(\d+) MB run", 500, "MB", is_long=True)
     for form in ("pure", "compiled") if importlib.util.find_spec("numba") else ("pure",):
         name, grown = f"memory: 30,000 to 1,000,000 events, {form}", ("memory.py", form)

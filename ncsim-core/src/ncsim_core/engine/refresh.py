@@ -6,12 +6,12 @@ transfer is credited does not depend on which other links were asked about, and 
 refresh equals global refresh to the last bit.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Touched
-from ncsim_core.engine.observer import RateCause, changes_of
+from ncsim_core.engine.observer import RateCause, RateColumns, changes_of
 from ncsim_core.engine.route_rates import moves_by_route
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
@@ -92,13 +92,8 @@ def bring_up_to_date(moves: Iterable[Move], state: State) -> None:
 
 def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: State) -> None:
     """Show the new rates and what explains them to whoever watches."""
-    if len(moves) > 1:
-        moves.sort()  # by number, which differ
-    numbers, _, rates_MBps, bottlenecks = zip(*moves)  # noqa: B905 - a keyword takes a fifth longer
-    flows_on, session, log = state.links.flows, state.interference, state.log
-    counts = [len(flows_on[link]) for link in bottlenecks]
-    against = None if session is None else session.against(bottlenecks)
-    columns = numbers, rates_MBps, bottlenecks, counts, against
+    columns = columns_of(moves, state)
+    log = state.log
     if log is not None:
         log.rates[len(log.events) - 1] = columns
     if state.observers:
@@ -106,3 +101,23 @@ def report_rates(transfer: Transfer, change: Change, moves: list[Move], state: S
         for observer in state.observers:
             if observer.wants_rates:
                 observer.rates_assigned(state.now_us, cause, changes_of(columns))
+
+
+def columns_of(moves: list[Move], state: State) -> RateColumns:
+    """Return the new rates and what explains them, transfers in order."""
+    flows_on, session = state.links.flows, state.interference
+    counts: Sequence[int]
+    if len(moves) == 1:  # as nearly half of them, at a third of the time
+        ((number, _, rate_MBps, link),) = moves
+        numbers, rates_MBps, links, counts = (
+            (number,),
+            (rate_MBps,),
+            (link,),
+            (len(flows_on[link]),),
+        )
+    else:
+        moves.sort()  # by number, which differ
+        numbers, _, rates_MBps, links = zip(*moves)  # noqa: B905 - a keyword takes a fifth longer
+        counts = [len(flows_on[link]) for link in links]
+    against = None if session is None else session.against(links)
+    return numbers, rates_MBps, links, counts, against
