@@ -149,3 +149,16 @@ def test_the_sweeps_of_the_examples_fit_the_published_schema():
     for path in files:
         document = yaml.safe_load(path.read_text(encoding="utf-8"))
         assert list(Draft7Validator(schema).iter_errors(document)) == [], path
+
+
+def test_seeds_of_a_fixed_network_and_workload_are_no_more_observations(tmp_path):
+    (tmp_path / "made.yaml").write_text(yaml.safe_dump(SWEEP, sort_keys=False))
+    fixed = SWEEP["sweep"] | {"base": {"scenario": str(ROOT / "examples" / "two_hop.yaml")}}
+    fixed["vary"] = {"interference": ["none", "csma_bianchi"]}
+    (tmp_path / "fixed.yaml").write_text(yaml.safe_dump({"sweep": fixed}, sort_keys=False))
+
+    assert ncsim("sweep", tmp_path / "made.yaml", "--dry-run")[2] == ""
+    assert (
+        "note: network and workload are the same under all 3 seeds"
+        in (ncsim("sweep", tmp_path / "fixed.yaml", "--dry-run")[2])
+    )

@@ -80,8 +80,8 @@ def test_means_and_intervals_are_those_of_the_statistics(drawn, tmp_path):
     assert list(data.get_ydata()[:2]) == [each.mean for each in intervals]
     assert bars[0].get_segments()[1][1][1] == pytest.approx(intervals[1].high)
     assert axes.get_xscale() == "log"
-    assert axes.get_xlabel() == "dags.payload_MB"
-    assert axes.get_ylabel() == "makespan_s"
+    assert axes.get_xlabel() == "payload (MB)"
+    assert axes.get_ylabel() == "makespan (s)"
 
 
 def test_slowdown_is_taken_seed_by_seed(drawn, tmp_path):
@@ -123,7 +123,7 @@ def test_text_in_pictures_stays_text(tmp_path):
     draw_means(PAYLOADS, "payload_MB", "makespan_s", tmp_path / "means.svg")
     texts = {each.text for each in ElementTree.parse(tmp_path / "means.svg").iter() if each.text}
 
-    assert {"dags.payload_MB", "makespan_s", "csma_bianchi", "none", "study"} <= texts
+    assert {"payload (MB)", "makespan (s)", "csma_bianchi", "none", "study"} <= texts
 
 
 @pytest.mark.parametrize(
@@ -140,3 +140,14 @@ def test_what_cannot_be_drawn_is_told(draw, message, tmp_path):
         draw(tmp_path / "figure.png")
 
     assert list(tmp_path.iterdir()) == []
+
+
+def test_points_at_names_are_joined_only_where_several_lines_cross(drawn, tmp_path):
+    draw_means(POLICIES, "scheduler", "makespan_s", tmp_path / "several.svg")
+    draw_slowdown(PAYLOADS, "payload_MB", "interference", tmp_path / "numbers.svg")
+    one = study([("heft", 1, 3.0), ("cpop", 1, 4.0)], "scheduler")
+    draw_means(one, "scheduler", "makespan_s", tmp_path / "one.svg")
+
+    styles = [{line[0].get_linestyle() for line in lines_of(f.axes[0]).values()} for f in drawn]
+    assert "None" not in styles[0] | styles[1]
+    assert styles[2] == {"None"}

@@ -17,6 +17,7 @@ SHOWN_ERRORS = 5
 ERROR_WIDTH = 200
 
 if TYPE_CHECKING:
+    from ncsim_core.sweep.plan import SweepPlan
     from ncsim_core.sweep.running import SweepOptions, SweepResults
 
 
@@ -95,9 +96,20 @@ def _carry_out(file: str, output: Path, options: "SweepOptions", *, quiet: bool)
     with run_sweep(file, output, options) as results:
         counts = _carried_out(results, quiet=quiet)
     typer.echo(f"{results.plan.name}: {_summary(counts)}, in {output}/")
+    _warn_of_repetition(results.plan)
     if counts.keys() - {"completed"}:
         typer.echo(f"ncsim sweep status {output} says why runs did not complete", err=True)
         raise typer.Exit(ExitCode.RUN_DID_NOT_COMPLETE)
+
+
+def _warn_of_repetition(plan: "SweepPlan") -> None:
+    if plan.repeats_itself:
+        typer.echo(
+            f"note: network and workload are the same under all {len(plan.seeds)} seeds; only "
+            "components that draw (a random scheduler, shadowing) make a difference, and intervals "
+            "over the others say nothing",
+            err=True,
+        )
 
 
 def _carried_out(results: "SweepResults", *, quiet: bool) -> Counter[str]:
@@ -149,6 +161,7 @@ def _foresee(file: str) -> None:
     typer.echo(f"  {len(plan.seeds):5d} x seed")
     for text in plan.where:
         typer.echo(f"  where {text}")
+    _warn_of_repetition(plan)
 
 
 def _status(study: Path, *, as_json: bool) -> None:

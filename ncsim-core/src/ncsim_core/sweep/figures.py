@@ -26,6 +26,12 @@ LEGEND_COLUMNS: Final = 3
 WIDE: Final = 30.0
 """Ratio of the ends of an axis from which on it is logarithmic."""
 
+UNITS: Final = {
+    "s": "s", "us": "us", "m": "m", "MB": "MB", "hops": "hops", "MBps": "MB/s", "Mbps": "Mb/s",
+    "dB": "dB", "dBm": "dBm", "mW": "mW", "MHz": "MHz", "GHz": "GHz",
+}  # fmt: skip
+"""Units as columns end in them, and as an axis names them."""
+
 Point = tuple[Any, MeanInterval]
 
 
@@ -50,7 +56,7 @@ def draw_means(runs: Table, along: str, measure: str, path: Path) -> None:
         _line(group, others, along, lambda records: [each[measure] for each in records])
         for group in grouped(runs.to_dicts(), others)
     ]
-    labels = {"xlabel": along, "ylabel": measure, "title": runs.title}
+    labels = {"xlabel": quantity(along), "ylabel": quantity(measure), "title": runs.title}
     _draw_lines(lines, others, labels, path)
 
 
@@ -72,7 +78,8 @@ def draw_slowdown(runs: Table, along: str, mode: str, path: Path, full: str | No
         return [slowdown(found.get((full, seed)), found.get((SOLO, seed))) for seed in seeds]
 
     lines = [_line(group, others, along, ratios) for group in grouped(runs.to_dicts(), others)]
-    labels = {"xlabel": along, "ylabel": f"makespan, {full} over {SOLO}", "title": runs.title}
+    ratio = f"makespan, {full} over {SOLO}"
+    labels = {"xlabel": quantity(along), "ylabel": ratio, "title": runs.title}
     _draw_lines(lines, others, labels, path)
 
 
@@ -139,13 +146,15 @@ def _draw_lines(
     ) as figure:
         axes = figure.subplots()
         for number, line in enumerate(lines):
-            axes.errorbar(
+            drawn = axes.errorbar(
                 [_place(x) for x, _ in line.points],
                 [_number(mean.mean) for _, mean in line.points],
                 _margins([mean for _, mean in line.points]),
                 label=line.name,
                 **style(number),
             )
+            if len(lines) == 1 and not all(isinstance(_place(x), float) for x, _ in line.points):
+                drawn[0].set_linestyle("none")  # between names lies nothing
         places = dict.fromkeys(_place(x) for line in lines for x, _ in line.points)
         numbers = [place for place in places if isinstance(place, float)]
         if len(numbers) == len(places):
@@ -194,6 +203,18 @@ def _name_colours(figure: Any) -> None:  # noqa: ANN401 - matplotlib is untyped
 
 def _label(record: Mapping[str, Any], heads: Sequence[str]) -> str:
     return " / ".join(shown_value(record[each]) for each in heads) or "all"
+
+
+def quantity(column: str) -> str:
+    """Return a column as an axis names it.
+
+    >>> quantity("makespan_s"), quantity("dags.payload_MB"), quantity("scheduler")
+    ('makespan (s)', 'payload (MB)', 'scheduler')
+    """
+    words = _last_word(column).split("_")
+    units = [each for each in words if each in UNITS]
+    name = " ".join(each for each in words if each not in UNITS)
+    return f"{name} ({' '.join(UNITS[each] for each in units)})" if units and name else name
 
 
 def _last_word(column: str) -> str:

@@ -115,6 +115,14 @@ class SweepPlan:
         digest = hashlib.sha256(canonical([run.seed, own]).encode()).digest()
         return int.from_bytes(digest[:SEED_BYTES], "big")
 
+    @property
+    def repeats_itself(self) -> bool:
+        """Return whether several seeds share one network and one workload, made by no generator."""
+        parts = [self.base.network, self.base.dags]
+        is_made = any(isinstance(part, Mapping) and "type" in part for part in parts)
+        is_varied = any(axis.part != "config" for axis in self.axes)
+        return len(self.seeds) > 1 and not is_made and not is_varied
+
     def to_json(self) -> str:
         """Return the plan as text that ``plan_from_json`` reads."""
         return canonical(asdict(self))
