@@ -49,6 +49,13 @@ def test_a_misspelt_verb_gets_a_suggestion(capsys):
     assert "Did you mean 'validate'" in capsys.readouterr().err
 
 
+def test_a_verb_of_a_package_that_is_not_installed_names_the_package(monkeypatch, capsys):
+    monkeypatch.setattr("ncsim_core.cli.front_page.entry_points", lambda **_: [])
+
+    assert code_of("view", "out/") == 1
+    assert "ncsim view comes with ncsim-viz: pip install ncsim-viz" in capsys.readouterr().err
+
+
 def test_a_package_cannot_take_a_verb_of_ncsims_own(monkeypatch):
     class Intruder:
         name = "run"

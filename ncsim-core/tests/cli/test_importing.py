@@ -30,6 +30,13 @@ def host(tmp_path):
     return path
 
 
+def test_a_scenario_needs_no_import(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text("scenario: {}")
+
+    assert ncsim("import", tmp_path / "mine.yaml") == 1
+    assert "need no import: ncsim run" in capsys.readouterr().err
+
+
 def test_without_a_scenario_the_dag_is_printed(capsys):
     assert ncsim("import", FILM, "--id", "film", "--at", "1.5") == 0
 

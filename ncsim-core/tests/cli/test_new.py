@@ -56,3 +56,13 @@ def test_nothing_is_replaced(tmp_path, capsys):
     assert ncsim("new", path) == 1
     assert path.read_text(encoding="utf-8") == "mine"
     assert "exists already" in capsys.readouterr().err
+
+
+def test_each_missing_parameter_of_a_generator_is_told_once_with_what_it_is(tmp_path, capsys):
+    assert ncsim("new", tmp_path / "x.yaml", "--network", "random_geometric") == 1
+
+    assert capsys.readouterr().err.splitlines() == [
+        "ncsim new  network: 'nodes' is missing: Nodes",
+        "ncsim new  network: 'side_m' is missing: Side of the square, m",
+        "ncsim new  network: 'range_m' is missing: Longest link, m",
+    ]

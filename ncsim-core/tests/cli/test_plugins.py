@@ -220,6 +220,11 @@ def test_check_of_a_package_without_entry_point_says_what_is_missing():
     assert "did you mean 'ncsim-core'" in str(run("check", "ncsim-cor").exception)
 
 
+@pytest.mark.parametrize("name", ["import", "3x", "two words"])
+def test_a_name_that_no_package_can_have_is_refused(name, tmp_path):
+    assert "cannot be a package name" in str(run("new", name, "-o", str(tmp_path / "x")).exception)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_new_project_passes_its_own_tests(kind, tmp_path):
     name = f"ncsim-made-{kind.replace('_', '-')}"

@@ -48,6 +48,13 @@ def test_show_names_the_kinds_when_one_is_unknown(run, capsys):
     assert "no kind of record rates; there are inject, place" in capsys.readouterr().err
 
 
+def test_a_scenario_in_place_of_a_trace_is_told_as_such(tmp_path, capsys):
+    (tmp_path / "x.yaml").write_text("scenario:\n  name: x\n")
+
+    assert code("explain", tmp_path / "x.yaml") == 1
+    assert "a trace is what ncsim run x.yaml -o out/ leaves" in capsys.readouterr().err
+
+
 def test_check_passes_a_sound_trace_and_fails_a_broken_one(run, capsys):
     assert code("trace", "check", run) == 0
     assert "22 records, completed, nothing wrong" in capsys.readouterr().out

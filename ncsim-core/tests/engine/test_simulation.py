@@ -192,6 +192,7 @@ def test_links_without_bandwidth_are_not_usable():
     outcome = run(network, chain(2, pins={0: 0, 1: 1})).outcome
 
     assert outcome.status is RunStatus.UNROUTABLE
+    assert outcome.detail.endswith("-> T1 on n1. Links without bandwidth: n0_n1, n1_n0")
 
 
 @pytest.mark.parametrize("limits", [Limits(max_events=3), Limits(max_time_us=500_000)])

@@ -155,6 +155,17 @@ def test_the_published_default_interference_is_kept(published):
     assert "config.interference is not given: taken as proximity" in scenario.notes[1]
 
 
+def test_a_file_that_may_have_been_written_for_the_published_tool_says_what_that_took(published):
+    silent = parse_scenario(text("{seed: 1}"), registry=published)
+    told = parse_scenario(text("{interference: none}"), registry=published)
+    wireless = parse_scenario(text("{link_model: wifi}"), registry=published)
+
+    assert specs(silent)["interference_model"] == ("none", {})
+    (note,) = silent.notes
+    assert note.startswith("config.interference is not given: taken as none; the published ncsim")
+    assert told.notes == wireless.notes == ()
+
+
 def test_a_default_that_is_not_installed_is_left_out_with_a_note(core: Registry):
     scenario = parse_scenario(text("{}", root=False), registry=core)
 

@@ -61,6 +61,12 @@ def test_forms_that_no_scenario_needs_are_refused(text, message):
     assert slips_of(text) == [message]
 
 
+def test_a_decimal_comma_is_told_as_one():
+    assert slips_of("{data_size: 8,5}") == [
+        "a key must be text, not 5; put it in quotes, or write 8.5 if that is one number"
+    ]
+
+
 def test_a_million_brackets_do_no_harm():
     assert slips_of("[" * 1_000_000) == [f"nested more than {MAX_DEPTH} levels deep"]
 

@@ -52,6 +52,11 @@ def import_workflow(  # noqa: PLR0913 - one parameter per option
     if output is not None and output.exists():
         raise ScenarioError(f"{output}: exists already; choose another name")
     _check_options(at, speed, dag_id)
+    if workflow.suffix.lower() in (".yaml", ".yml"):
+        raise ScenarioError(
+            f"{workflow}: a WfCommons workflow is JSON; scenarios, those of the published ncsim "
+            f"too, need no import: ncsim run {workflow}"
+        )
     found = read_workflow(workflow, units_per_s=speed, dag_id=dag_id)
     document = _document(Injection(us_from_s(at), found.dag), into, keep=keep)
     _write(document, output)

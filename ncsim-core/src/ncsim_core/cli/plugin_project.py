@@ -4,6 +4,7 @@ import importlib.resources
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from keyword import iskeyword
 from pathlib import Path
 from string import Template
 from typing import Final
@@ -140,7 +141,7 @@ def write_project(folder: Path, name: str, kind: str) -> list[Path]:
     Raises:
         ScenarioError: The name cannot be one, or the folder is not empty.
     """
-    if not NAME_PATTERN.fullmatch(name):
+    if not NAME_PATTERN.fullmatch(name) or iskeyword(name):
         raise ScenarioError(
             f"{name!r} cannot be a package name; take lower-case letters, digits and hyphens"
         )

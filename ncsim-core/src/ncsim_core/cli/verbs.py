@@ -17,6 +17,8 @@ from ncsim_core.cli.front_page import (
     plugin_verbs,
     summaries,
 )
+from ncsim_core.errors import PluginError
+from ncsim_core.registry.well_known import PROVIDER_OF_VERB
 
 PLAIN: dict[str, Any] = {
     "rich_markup_mode": None,
@@ -36,6 +38,9 @@ class VerbGroup(TyperGroup):
 
     @override
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+        owner = None if args[0] in self.commands else PROVIDER_OF_VERB.get(args[0])
+        if owner is not None:
+            raise PluginError(f"ncsim {args[0]} comes with {owner}: pip install {owner}")
         name, _, rest = super().resolve_command(ctx, args)
         if name is None:
             return name, None, rest

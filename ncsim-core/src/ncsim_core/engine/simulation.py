@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from ncsim_core.engine.compiled.compiled_run import CompiledRun
 
 MAX_LINES_IN_DETAIL = 20
+MAX_LINKS_IN_DETAIL = 5
 
 MOST_AT_A_TIME = 1000
 """Events between two looks at the clock and two batches for those who watch."""
@@ -277,7 +278,7 @@ class Simulation:
 
     def _end_if_unroutable(self) -> None:
         if self._state.unroutable:
-            self._end(RunStatus.UNROUTABLE, _unroutable_detail(self._state))
+            self._end(RunStatus.UNROUTABLE, _unroutable_detail(self._state, self.setup))
 
     def _end(self, status: RunStatus, detail: str) -> None:
         self._tell()
@@ -321,8 +322,18 @@ def _endless_detail(due: Due, setup: Setup) -> str:
     return f"the next event lies beyond {s_from_us(HORIZON_us):.0f} s, where runs end: {what}"
 
 
-def _unroutable_detail(state: State) -> str:
-    return _listed("dependencies without a usable route", state.unroutable)
+def _unroutable_detail(state: State, setup: Setup) -> str:
+    text = _listed("dependencies without a usable route", state.unroutable)
+    network = setup.network
+    dead = [
+        link.id
+        for link, bandwidth_MBps in zip(network.links, network.bandwidth_MBps, strict=True)
+        if bandwidth_MBps == 0
+    ]
+    if not dead:
+        return text
+    more = f" and {len(dead) - MAX_LINKS_IN_DETAIL} more" if dead[MAX_LINKS_IN_DETAIL:] else ""
+    return f"{text}. Links without bandwidth: {', '.join(dead[:MAX_LINKS_IN_DETAIL])}{more}"
 
 
 def _listed(what: str, lines: list[str]) -> str:

@@ -28,12 +28,19 @@ def unknown_name(
 
 
 def close_match(name: str, candidates: Iterable[str]) -> str | None:
-    """Return the candidate that was probably meant.
+    """Return the candidate that was probably meant: letters swapped, or nearly the same.
 
-    >>> close_match("hfet", ["heft", "cpop"])
-    'heft'
+    >>> close_match("hetf", ["etf", "heft", "cpop"]), close_match("HEFT", ["heft"])
+    ('heft', 'heft')
     """
-    return next(iter(difflib.get_close_matches(name, sorted(candidates), n=1)), None)
+    known = sorted(candidates)
+    letters = sorted(name.casefold())
+    swapped = [each for each in known if sorted(each.casefold()) == letters]
+    by_lower = {each.casefold(): each for each in known}
+    near = difflib.get_close_matches(name, known, n=1) or [
+        by_lower[each] for each in difflib.get_close_matches(name.casefold(), by_lower, n=1)
+    ]
+    return next(iter([*swapped, *near]), None)
 
 
 def _suggestion(

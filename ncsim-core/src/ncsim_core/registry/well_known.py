@@ -27,6 +27,9 @@ PROVIDER_BY_NAME: Final[Mapping[str, Mapping[str, str]]] = {
 }
 """Distribution of each well-known component, by kind and name; sections under ``section``."""
 
+PROVIDER_OF_VERB: Final[Mapping[str, str]] = {"view": "ncsim-viz", "validate-model": "ncsim-wifi"}
+"""Distribution of each well-known verb that is not ncsim-core's."""
+
 
 def provider(kind: str, name: str) -> str | None:
     """Return the distribution known to bring a component or section, if any."""

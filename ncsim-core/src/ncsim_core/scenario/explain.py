@@ -11,7 +11,7 @@ from ncsim_core.registry import Registry
 from ncsim_core.scenario.faults import Data, Path, Problem, shown
 from ncsim_core.scenario.plain_fit import plain_fit
 from ncsim_core.scenario.schema import compose_schema
-from ncsim_core.scenario.wording import Finding, worded
+from ncsim_core.scenario.wording import Finding, missing_key, worded
 
 KIND_BY_CONFIG_KEY = {kind.config_key: kind.name for kind in KINDS.values()}
 
@@ -154,8 +154,10 @@ def _without_types_of_choices(findings: list[Finding]) -> list[Finding]:
 def _without_echoes(problems: list[Problem]) -> list[Problem]:
     """Leave out "'x' is missing" where a misspelt x stands beside it."""
     spelt_wrong = {
-        (problem.path[:-1], f"{problem.suggestion!r} is missing")
+        (problem.path[:-1], missing_key(problem.suggestion))
         for problem in problems
-        if problem.is_about_key
+        if problem.is_about_key and problem.suggestion is not None
     }
-    return [each for each in problems if (each.path, each.message) not in spelt_wrong]
+    return [
+        each for each in problems if (each.path, each.message.partition(":")[0]) not in spelt_wrong
+    ]

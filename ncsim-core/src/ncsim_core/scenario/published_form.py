@@ -63,12 +63,14 @@ class Translation:
 
 
 def translated(document: Data, registry: Registry) -> Translation:
-    """Return a file's document in today's form; one that is in today's form is left alone."""
+    """Return a file's document in today's form; one that is in today's form is left as it is."""
     work = _Work(document, registry)
     if work.is_published():
         work.write_ids_as_text()
         work.write_default_interference()
         work.write_positions()
+    else:
+        work.note_default_interference()
     return work.done()
 
 
@@ -151,6 +153,23 @@ class _Work:
         self._notes.append(f"config.interference is not given: {note}")
         self._config.pop("interference_radius", None)
 
+    def note_default_interference(self) -> None:
+        """Say what the published ncsim chose, of a file that may have been written for it.
+
+        Nothing tells such a file from one in today's form: a root, nodes with positions, links
+        with bandwidths, and neither an interference nor a link model.
+        """
+        network = self._scenario.get("network")
+        if not self._is_readable or not isinstance(network, dict):
+            return
+        nodes, links = network.get("nodes"), network.get("links")
+        is_silent = not {"interference", "link_model", "rf"} & self._config.keys()
+        if is_silent and _all_have(nodes, "position") and _all_have(links, "bandwidth"):
+            self._notes.append(
+                "config.interference is not given: taken as none; the published ncsim took "
+                f"proximity with radius {PUBLISHED_RADIUS_m} m"
+            )
+
     def write_positions(self) -> None:
         """Put nodes without position at (0, 0) where the interference model needs positions."""
         network = self._scenario.get("network")
@@ -225,6 +244,10 @@ class _Work:
     def _move(self, new: Path, old: Path) -> None:
         """Note that ``new`` in the config was taken from ``old`` in the config."""
         self._moved[(*CONFIG, *new)] = original_path((*CONFIG, *old), self._moved)
+
+
+def _all_have(rows: Data, key: str) -> bool:
+    return isinstance(rows, list) and all(isinstance(row, dict) and key in row for row in rows)
 
 
 def _dag_with_text_ids(dag: Data, changed: list[str]) -> Data:

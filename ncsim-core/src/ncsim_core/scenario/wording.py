@@ -1,11 +1,12 @@
 """Schema errors in the words of the user: what is wrong, and what was probably meant."""
 
-import difflib
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
+from ncsim_core.registry.messages import close_match
+from ncsim_core.registry.well_known import provider
 from ncsim_core.scenario.faults import Path, Problem, shown
 from ncsim_core.units import MAX_QUANTITY
 
@@ -45,7 +46,7 @@ def worded(path: Path, error: Finding) -> Iterable[Problem]:
 
 def did_you_mean(word: object, candidates: Iterable[str]) -> str | None:
     """Return the candidate that was probably meant by ``word``."""
-    return next(iter(difflib.get_close_matches(str(word), sorted(candidates), n=1)), None)
+    return close_match(str(word), candidates)
 
 
 class Hints:
@@ -81,15 +82,27 @@ def _unknown_keys(path: Path, error: Finding) -> Iterable[Problem]:
 
 
 def _unknown_key(path: Path, key: str, known: list[str]) -> Problem:
+    owner = provider("section", key) if path[-1:] == ("config",) else None
+    if owner is not None:
+        message = f"unknown key {key!r}; it comes with {owner}: pip install {owner}"
+        return Problem((*path, key), message, key, is_about_key=True)
     meant = did_you_mean(key, known)
     listing = f"; known here: {', '.join(known) or 'none'}" if meant is None else ""
     return Problem((*path, key), f"unknown key {key!r}{listing}", key, meant, is_about_key=True)
 
 
 def _missing_keys(path: Path, error: Finding) -> Iterable[Problem]:
-    missing = [key for key in error.validator_value if key not in error.instance]
-    for key in missing:
-        yield Problem(path, f"{key!r} is missing")
+    """Yield the one key that this error is about; there is an error for each."""
+    known = error.schema.get("properties", {})
+    for key in error.validator_value:
+        if error.message == f"{key!r} is a required property":
+            told = known.get(key, {}).get("description", "").rstrip(".")
+            yield Problem(path, f"{missing_key(key)}: {told}" if told else missing_key(key))
+
+
+def missing_key(key: str) -> str:
+    """Return how the message about a missing key begins."""
+    return f"{key!r} is missing"
 
 
 def _wrong_type(path: Path, error: Finding) -> Iterable[Problem]:

@@ -113,6 +113,14 @@ class _Frame:
         """Return the last step of the path of the value that comes next."""
         return self.key if self.key is not None else len(self.container)
 
+    def advice(self, key: object) -> str:
+        """Return what to do about a key that is no text."""
+        values = self.container.values() if isinstance(self.container, dict) else self.container
+        before = next(reversed([*values]), None)
+        if type(before) is int and type(key) is int:
+            return f"put it in quotes, or write {before}.{key} if that is one number"
+        return "put it in quotes"
+
     def put(self, value: object) -> None:
         if isinstance(self.container, list):
             self.container.append(value)
@@ -171,7 +179,7 @@ class _Reader:
         line = event.start_mark.line + 1
         frame.key = event.value
         if not isinstance(value, str):
-            self._note(event, f"a key must be text, not {shown(value)}; put it in quotes")
+            self._note(event, f"a key must be text, not {shown(value)}; {frame.advice(value)}")
         elif value == "<<" and event.implicit[0]:
             self._note(event, "merge keys are not supported; write the keys out")
         elif value in frame.key_lines:

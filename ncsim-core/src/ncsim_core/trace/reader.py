@@ -93,6 +93,10 @@ class TraceReader:
         """Return an error that names file and line."""
         return TraceError(f"{self.path}:{line or self._line}: {message}")
 
+    def _advice(self) -> str:
+        is_yaml = self.path.suffix.lower() in (".yaml", ".yml")
+        return f"; a trace is what ncsim run {self.path.name} -o out/ leaves" if is_yaml else ""
+
     def _next_object(self) -> Mapping[str, object] | None:
         """Return the next line as an object; ``None`` at the end, whole or torn off."""
         text = self._next_line()
@@ -103,7 +107,7 @@ class TraceReader:
         except _UNUSABLE as error:
             if not text.endswith(b"\n"):
                 return None
-            raise self.fault(f"this is no JSON: {shown(text)}") from error
+            raise self.fault(f"this is no JSON: {shown(text)}{self._advice()}") from error
         if not isinstance(entry, dict):
             raise self.fault(f"expected an object, found {shown(text)}")
         return entry
