@@ -55,7 +55,7 @@ def test_components_of_the_sensing_graph_are_independent():
 
 def test_stationary_distribution_balances_the_whole_chain():
     rng = np.random.default_rng(1)
-    rates = ChainRates(*(rng.uniform(0.1, 1.0, (3, STAGES, STAGES)) for _ in range(5)))
+    rates = ChainRates(*(rng.uniform(0.1, 1.0, (STAGES, STAGES, 3)) for _ in range(5)))
 
     joint = stationary(rates)
 
@@ -67,7 +67,7 @@ def test_stationary_distribution_balances_the_whole_chain():
                 for b in range(STAGES):
                     to_a = a if da is None else (a + 1) % STAGES if da else 0
                     to_b = b if db is None else (b + 1) % STAGES if db else 0
-                    moved = rate[chain, a, b] * joint[chain, a, b]
+                    moved = rate[a, b, chain] * joint[chain, a, b]
                     flow[to_a, to_b] += moved
                     flow[a, b] -= moved
         assert np.abs(flow).max() < 1e-12

@@ -15,20 +15,26 @@ from ncsim_wifi.spatial.backoff import STAGES
 from ncsim_wifi.spatial.sums import row_sums
 
 BOUNDARY = 2 * STAGES - 1
+STATES = STAGES * STAGES  # (a, b) is number 7 a + b
+STEPS_BACK = (STAGES + 1, STAGES, 1)  # both lost a frame before, or a, or b
 DIAGONALS = [
-    (
-        (STAGES - 1) * max(1, both - STAGES + 1) + both,
-        (STAGES - 1) * min(STAGES - 1, both - 1) + both + 1,
-    )
+    np.array([STAGES * a + both - a for a in range(1, STAGES) if 0 < both - a < STAGES])
     for both in range(2, 2 * STAGES - 1)
-]  # interior states of equal a + b, as numbers 7 a + b: the first, and beyond the last
+]
+"""Interior states of equal a + b, which follow from those before."""
+INTERIOR = np.concatenate(DIAGONALS)
+SOURCES = [np.array([diagonal - back for back in STEPS_BACK]) for diagonal in DIAGONALS]
+SLICES = [slice(diagonal[0], diagonal[-1] + 1, STAGES - 1) for diagonal in DIAGONALS]
+PLACES = np.cumsum([0, *map(len, DIAGONALS)]).tolist()
 
 
 class SideRates(NamedTuple):
     """One side of each chain; ``b`` is the other side's stage, ``a`` its own.
 
+    Shape (7, chains), but (chains, 7) in compiled functions.
+
     Args:
-        survives: s_b, shape (chains, 7).
+        survives: s_b.
         hit: Probability that a frame is overlapped, by b.
         share: phi_b, that the other side is the one that overlaps.
         other: o(a), what else a frame has to survive.
@@ -45,7 +51,7 @@ class SideRates(NamedTuple):
 
 
 class ChainRates(NamedTuple):
-    """Transitions per microsecond from state (a, b), shape (chains, 7, 7).
+    """Transitions per microsecond from state (a, b), shape (7, 7, chains).
 
     Args:
         success_a: a returns to 0.
@@ -67,17 +73,13 @@ def chain_rates(one: SideRates, two: SideRates) -> ChainRates:
 
     Source: MODEL 3.10.
     """
-    rate_a, rate_b = 1.0 / one.cycle_us[:, :, None], 1.0 / two.cycle_us[:, None, :]
-    survives_a = 1.0 - one.grows[:, :, None] * (1.0 - one.survives[:, None, :])
-    survives_b = 1.0 - two.grows[:, None, :] * (1.0 - two.survives[:, :, None])
-    survives_a, survives_b = np.maximum(0.0, survives_a), np.maximum(0.0, survives_b)
-    hit_a = np.maximum(one.hit[:, None, :], 1e-12)
-    hit_b = np.maximum(two.hit[:, :, None], 1e-12)
-    success_a = survives_a * one.other[:, :, None] * rate_a
-    success_b = survives_b * two.other[:, None, :] * rate_b
-    overlaps = np.minimum(
-        hit_a * one.share[:, None, :] * rate_a, hit_b * two.share[:, :, None] * rate_b
-    )
+    rate_a, rate_b = 1.0 / one.cycle_us[:, None], 1.0 / two.cycle_us
+    survives_a = np.maximum(0.0, 1.0 - one.grows[:, None] * (1.0 - one.survives))
+    survives_b = np.maximum(0.0, 1.0 - two.grows * (1.0 - two.survives)[:, None])
+    hit_a, hit_b = np.maximum(one.hit, 1e-12), np.maximum(two.hit, 1e-12)[:, None]
+    success_a = survives_a * one.other[:, None] * rate_a
+    success_b = survives_b * two.other * rate_b
+    overlaps = np.minimum((hit_a * one.share) * rate_a, (hit_b * two.share[:, None]) * rate_b)
     lost_a = np.minimum(1.0, (1.0 - survives_a) / hit_a)
     lost_b = np.minimum(1.0, (1.0 - survives_b) / hit_b)
     common = overlaps * lost_a * lost_b
@@ -103,7 +105,7 @@ def stationary(rates: ChainRates) -> FloatArray:
 
     Source: MODEL 3.10.
     """
-    by_state = ChainRates(*(rate.transpose(1, 2, 0)[..., None].copy() for rate in rates))
+    by_state = ChainRates(*(rate[..., None] for rate in rates))
     out = by_state.success_a + by_state.success_b + by_state.common
     out += by_state.loss_a
     out += by_state.loss_b
@@ -145,26 +147,27 @@ def _by_boundary(rates: ChainRates, out: FloatArray) -> FloatArray:
     stage = np.arange(STAGES)
     spread[0, stage, :, stage] = 1.0
     spread[stage[1:], 0, :, stage[1:] + STAGES - 1] = 1.0
-    flat = spread.reshape(STAGES * STAGES, *spread.shape[2:])  # state (a, b) is row 7 a + b
-    into_common, into_a, into_b = (
-        _into_interior(rate, out, step)
-        for rate, step in ((rates.common, (1, 1)), (rates.loss_a, (1, 0)), (rates.loss_b, (0, 1)))
-    )
-    for first, stop in DIAGONALS:
-        cells = slice(first, stop, STAGES - 1)
-        above, diagonal, left = (slice(first - k, stop - k, STAGES - 1) for k in (7, 8, 1))
-        cell = np.multiply(into_common[cells], flat[diagonal], out=flat[cells])
-        cell += into_a[cells] * flat[above]
-        cell += into_b[cells] * flat[left]
+    flat = spread.reshape(STATES, *spread.shape[2:])
+    into = _into_interior(rates, out)
+    for cells, sources, begin, end in zip(SLICES, SOURCES, PLACES, PLACES[1:], strict=False):
+        terms = flat.take(sources, axis=0)
+        terms *= into[:, begin:end]
+        np.add.reduce(terms, axis=0, out=flat[cells])
     return spread
 
 
-def _into_interior(rate: FloatArray, out: FloatArray, step: tuple[int, int]) -> FloatArray:
-    """Return the rate into each interior state over what leaves it, by number of the state."""
-    into = np.zeros_like(rate)
-    into[1:, 1:] = rate[1 - step[0] : STAGES - step[0], 1 - step[1] : STAGES - step[1]]
-    into[1:, 1:] /= out[1:, 1:]
-    return into.reshape(STAGES * STAGES, *rate.shape[2:])
+def _into_interior(rates: ChainRates, out: FloatArray) -> FloatArray:
+    """Return the rates into interior states over what leaves them.
+
+    Returns:
+        From the three states before, by place in ``INTERIOR``, shape (3, 36, chains, 1).
+    """
+    ways = rates.common, rates.loss_a, rates.loss_b
+    into = np.empty((len(ways), len(INTERIOR), *out.shape[2:]))
+    for way, (rate, back) in enumerate(zip(ways, STEPS_BACK, strict=True)):
+        rate.reshape(STATES, -1, 1).take(INTERIOR - back, axis=0, out=into[way])
+    into /= out.reshape(STATES, -1, 1).take(INTERIOR, axis=0)
+    return into
 
 
 def _boundary_inflow(rates: ChainRates, spread: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from ncsim_wifi.spatial.near import NOBODY
 from ncsim_wifi.spatial.overlap import half_kill
 from ncsim_wifi.spatial.relations import Hostile, impossible_subsets, subsets_of
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.sums import halved, halving_sums
+from ncsim_wifi.spatial.sums import column_sums
 
 TINY = 1e-12
 KINDS = 4  # of subsets that a gate compares
@@ -75,7 +75,7 @@ class GateMasks(NamedTuple):
         row: The energy set of the station that is silenced.
         subsets: How far it counts as one with the other party of the relation that leaves the
             channel free; as one of all with it; as one without it that leaves it free; as one of
-            all without; shape (gates, subsets, 4).
+            all without; shape (subsets, gates, 4).
     """
 
     gate: IntArray
@@ -97,9 +97,9 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile) -> GateMasks:
     it = (sets.member[row[gate]] == other[gate][:, None]).astype(np.float64) @ held > 0.0
     free = ~sets.blocks[row[gate]]
     counts = _left_by_rivals(scene, sets, hostile, gate, row[gate])
-    masks = np.empty((*free.shape, KINDS))
+    masks = np.empty((free.shape[1], len(free), KINDS))
     for kind, mask in enumerate((it & free, it, ~it & free, ~it)):
-        masks[:, :, kind] = mask * counts
+        masks[:, :, kind] = (mask * counts).T
     return GateMasks(gate, row[gate], masks)
 
 
@@ -136,7 +136,7 @@ class Silencing(NamedTuple):
     """Who is silenced by summed power, from tables of a scene.
 
     Args:
-        feasible: 1 where a subset can be on the air together, shape (rows, subsets).
+        feasible: 1 where a subset can be on the air together, shape (subsets, rows).
         blocks: 1 where it silences the station.
         gates: Subsets for the gates.
         relation_count: Number of relations.
@@ -165,8 +165,8 @@ class Silenced(NamedTuple):
 def silencing_of(scene: Scene, sets: EnergySets, hostile: Hostile) -> Silencing:
     """Return the tables of a scene."""
     return Silencing(
-        sets.feasible.astype(np.float64),
-        sets.blocks.astype(np.float64),
+        sets.feasible.T.astype(np.float64, order="C"),
+        sets.blocks.T.astype(np.float64, order="C"),
         gate_masks(scene, sets, hostile),
         len(hostile),
     )
@@ -181,13 +181,13 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
         tables: Energy sets.
         on: a, probability that a member is on while the station could send, (rows, members).
     """
-    odds = on / (1.0 - on)
-    weight = np.ones((len(on), 1))
-    for member in range(on.shape[1]):
-        weight = np.concatenate([weight, weight * odds[:, member, None]], axis=1)
-    weight = weight * tables.feasible
-    blocking, every = halving_sums(np.stack([weight * tables.blocks, weight]))
-    blocked = blocking / every
+    weight = np.ones(tables.feasible.shape)
+    for member, odds in enumerate((on / (1.0 - on)).T):
+        half = 1 << member
+        np.multiply(weight[:half], odds, out=weight[half : 2 * half])
+    weight *= tables.feasible
+    sums = column_sums(np.concatenate([weight * tables.blocks, weight], axis=1))
+    blocked = sums[: len(on)] / sums[len(on) :]
     gates = open_gates(weight, tables.gates, 2 * tables.relation_count)
     return Silenced(blocked, *np.split(gates, 2))
 
@@ -200,9 +200,8 @@ def open_gates(weights: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     result = np.ones(count)
     if not len(masks.gate):
         return result
-    weight = weights[masks.row]
-    terms = (masks.subsets * weight[:, :, None]).reshape(len(weight), KINDS * weight.shape[1])
-    sums = halved(terms, KINDS).T
+    terms = masks.subsets * weights[:, masks.row, None]
+    sums = column_sums(terms.reshape(len(terms), -1)).reshape(-1, KINDS).T
     with_it, without = sums[0] / (sums[1] + TINY), sums[2] / (sums[3] + TINY)
     result[masks.gate] = np.minimum(1.0, with_it / np.maximum(without, TINY))
     return result

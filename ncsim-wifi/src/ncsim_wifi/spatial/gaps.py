@@ -54,14 +54,14 @@ def counter_law(share: FloatArray, others: FloatArray) -> CounterLaw:
 
 def window_powers(base: FloatArray) -> FloatArray:
     """Return y^W of each window by squaring, shape (relations, 7)."""
-    power = base
-    for _ in range(4):
-        power = power * power
-    powers = np.empty((len(base), STAGES))
-    for stage in range(STAGES):
-        powers[:, stage] = power
-        power = power * power
-    return powers
+    power = base * base
+    power *= power
+    power *= power
+    powers = np.empty((STAGES, len(base)))
+    np.multiply(power, power, out=powers[0])
+    for stage in range(1, STAGES):
+        np.multiply(powers[stage - 1], powers[stage - 1], out=powers[stage])
+    return powers.T
 
 
 def power_sums(
@@ -78,15 +78,29 @@ def power_sums(
     [4.0, 6.0, 14.0]
     """
     is_one = base > NEARLY_ONE
-    y = np.where(is_one, 0.5, base)
-    zeroth = (1.0 - beyond) / (1.0 - y)
-    first = (zeroth - 1.0 - last * beyond) / (1.0 - y)
-    second = (2.0 * first - zeroth + 1.0 - last * last * beyond) / (1.0 - y)
-    return (
-        np.where(is_one, last + 1.0, zeroth),
-        np.where(is_one, last * (last + 1.0) / 2.0, first),
-        np.where(is_one, last * (last + 1.0) * (2.0 * last + 1.0) / 6.0, second),
+    if not is_one.any():
+        return _geometric_sums(base, last, beyond)
+    sums = _geometric_sums(np.where(is_one, 0.5, base), last, beyond)
+    of_ones = (
+        last + 1.0,
+        last * (last + 1.0) / 2.0,
+        last * (last + 1.0) * (2.0 * last + 1.0) / 6.0,
     )
+    zeroth, first, second = (
+        np.where(is_one, one, other) for one, other in zip(of_ones, sums, strict=True)
+    )
+    return zeroth, first, second
+
+
+def _geometric_sums(
+    y: FloatArray, last: FloatArray, beyond: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return these sums for y well below 1."""
+    away = 1.0 - y
+    zeroth = (1.0 - beyond) / away
+    first = (zeroth - 1.0 - last * beyond) / away
+    second = (2.0 * first - zeroth + 1.0 - last * last * beyond) / away
+    return zeroth, first, second
 
 
 def mean_remaining_count(law: CounterLaw) -> FloatArray:
@@ -190,15 +204,18 @@ class Gaps:
         moments = terms * POWERS_OF_COUNTS[:, :, : last + 1]
         return np.add.accumulate(moments, axis=2, out=moments).reshape(4, -1)
 
-    @cached_property
-    def _ending(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return c_0, c_1 and c_2 of P_k(n) = (c_0 + c_1 n + c_2 n^2) y^n, shape (relations, 7)."""
+    def _ending(self) -> FloatArray:
+        """Return c_0, c_1 and c_2 of P_k(n) = (c_0 + c_1 n + c_2 n^2) y^n.
+
+        Returns:
+            Shape (3, 1, relations, 7).
+        """
         linear, square, others = self.law
-        return (
-            1.0 - others * (1.0 - linear + square),
-            -linear + others * (linear - 2.0 * square),
-            square * (1.0 - others),
-        )
+        law = np.empty((3, 1, *linear.shape))
+        law[0, 0] = 1.0 - others * (1.0 - linear + square)
+        law[1, 0] = -linear + others * (linear - 2.0 * square)
+        law[2, 0] = square * (1.0 - others)
+        return law
 
     def short(self, window_us: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return P(gap < v) and E(v - gap)^+ of uninterrupted gaps.
@@ -209,17 +226,20 @@ class Gaps:
             window_us: v, shape (windows, relations, 1).
         """
         room_us = window_us - self.after_us[:, None]
-        last = np.minimum(np.floor(room_us / SLOT_us), LONGEST_COUNTS)
-        places = np.maximum(last, 0.0).astype(np.int64)
-        moments = self._moments(int(places.max(initial=0)))
+        last = np.floor(room_us / SLOT_us)
+        moments = self._moments(max(0, int(last.max(initial=0.0))))
+        last = np.minimum(last, LONGEST_COUNTS)
         count = moments.shape[1] // max(1, len(self.after_us))
         rows = np.arange(0, moments.shape[1], count)[:, None]
-        of_0, of_1, of_2, of_3 = moments[:, rows + places]
-        one, by_n, by_square = self._ending
-        ends = one * of_0 + by_n * of_1 + by_square * of_2
-        counted = one * of_1 + by_n * of_2 + by_square * of_3
+        places = np.maximum(last, 0.0).astype(np.int64)
+        found = moments.take(rows + places, axis=1)
+        law = self._ending()
+        ends = np.add.reduce(law * found[:3], axis=0)
+        spare_us = room_us * ends - SLOT_us * np.add.reduce(law * found[1:], axis=0)
         some = last >= 0.0
-        return np.where(some, ends, 0.0), np.where(some, room_us * ends - SLOT_us * counted, 0.0)
+        if some.all():
+            return ends, spare_us
+        return np.where(some, ends, 0.0), np.where(some, spare_us, 0.0)
 
 
 class Windows(NamedTuple):
@@ -293,19 +313,18 @@ def survival(met: Interferers, windows: Windows) -> Survival:
     room_us = np.maximum(0.0, gaps.mean_us - left_us + spare_us)
     is_strong = windows.is_strong[:, None]
     full = np.where(is_strong, gaps.mean_us / gaps.cycle_us, 1.0)
-    partly_us = np.where(is_strong, 0.0, windows.borne_us[:, :, None] * (1.0 - ends[1:4]))
-    partly = np.minimum((room_us[1:4] + partly_us) / gaps.cycle_us, full)
+    borne_us = np.where(windows.is_strong, 0.0, windows.borne_us)[:, :, None]
+    partly = np.minimum((room_us[1:4] + borne_us * (1.0 - ends[1:4])) / gaps.cycle_us, full)
     weights = (1.0 - windows.immune) * GAUSS_WEIGHT[:, None]
-    survives = windows.immune[:, None] * full
-    for weight, part in zip(weights, partly, strict=True):
-        survives = survives + weight[:, None] * part
+    terms = np.empty((4, *full.shape))
+    np.multiply(windows.immune[:, None], full, out=terms[0])
+    np.multiply(weights[:, :, None], partly, out=terms[1:])
+    survives = np.add.reduce(terms, axis=0)
     on_part = gaps.on_air_us[:, None] / gaps.cycle_us
-    gates = windows.before[:, None], windows.during[:, None]
-    return Survival(
-        gated(survives, on_part, *gates),
-        gated(room_us[0] / gaps.cycle_us, on_part, *gates),
-        room_us[-1] / gaps.cycle_us,
-    )
+    missed = room_us[0] / gaps.cycle_us
+    both = np.concatenate([survives[None], missed[None]])
+    survives, missed = gated(both, on_part, windows.before[:, None], windows.during[:, None])
+    return Survival(survives, missed, room_us[-1] / gaps.cycle_us)
 
 
 def gated(

@@ -31,10 +31,6 @@ class RelationRates(NamedTuple):
     grows: FloatArray
 
 
-RawSides = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""s, hit, phi, o and growth of each side of the chains."""
-
-
 class JointStages:
     """The joint distributions of back-off stages of one scene, as the iteration goes.
 
@@ -91,9 +87,11 @@ class JointStages:
         if not self.count:
             return
         sides = self._sides(attempts, total, own_part, relation)
-        half = self.count
-        cycles_us = cycle_us[self.station]
-        one, two = (_side(sides, cycles_us, part) for part in (slice(0, half), slice(half, None)))
+        cycles_us = cycle_us[self.station].T
+        survives, hit, share, other, grows = sides
+        both_sides = SideRates(survives, hit, share, other, cycles_us, grows)
+        one = SideRates(*(rate[:, : self.count] for rate in both_sides))
+        two = SideRates(*(rate[:, self.count :] for rate in both_sides))
         joint = joint_stages(one, two)
         both = np.concatenate([joint, joint.transpose(0, 2, 1)])
         both /= np.maximum(row_sums(both), 1e-300)[:, :, None]
@@ -105,35 +103,27 @@ class JointStages:
         total: FloatArray,
         own_part: FloatArray,
         relation: RelationRates,
-    ) -> RawSides:
-        """Return the sides of the chains; links that are not hurt contribute s = 1."""
+    ) -> FloatArray:
+        """Return s, hit, phi, o and growth of both sides, shape (5, 7, sides of chains).
+
+        Links that are not hurt contribute s = 1.
+        """
         at = self.relations
         side, link = self.side[at], self._hostile.link[at]
-        weight = attempts[link][:, None]
-        survives_r, hit_r, share_r, grows_r = (each[at] for each in relation)
-        shape = (2 * self.count, STAGES)
-        survives, hit, share, grows = np.ones(shape), *np.zeros((3, *shape))
-        hurt = np.zeros((2 * self.count, 1))
-        self._add(hurt, side, weight)
-        self._add(survives, side, weight * (survives_r - 1.0))
-        self._add(hit, side, weight * hit_r)
-        self._add(share, side, weight * share_r)
-        self._add(grows, side, weight * grows_r)
-        per_station = self._scene.station_means(attempts, total)
-        other = per_station[self.station]
-        rest = np.minimum(1.0, total[link] / np.maximum(own_part[at], 1e-12))
-        self._add(other, side, weight * (rest - total[link]))
-        other = np.minimum(np.maximum(other, 0.0), 1.0)
-        return survives, hit, share / hurt, other, grows / hurt
-
-    def _add(self, target: FloatArray, side: IntArray, values: FloatArray) -> None:
-        """Add what relations contribute to their sides."""
+        weight, whole = attempts[link], total[link]
+        survives, hit, share, grows = (each[at] for each in relation)
+        effect = np.empty((len(at), 5, STAGES))
+        effect[:, 0] = survives - 1.0
+        effect[:, 1], effect[:, 2], effect[:, 4] = hit, share, grows
+        effect[:, 3] = np.minimum(1.0, whole / np.maximum(own_part[at], 1e-12)) - whole
+        effect *= weight[:, None, None]
+        sides = np.zeros((2 * self.count, 5, STAGES))
+        sides[:, 0] = 1.0
+        sides[:, 3] = self._scene.station_means(attempts, total)[self.station]
         if self._has_one_each:
-            target[side] += values
+            sides[side] += effect
         else:
-            np.add.at(target, side, values)
-
-
-def _side(sides: RawSides, cycles_us: FloatArray, part: slice) -> SideRates:
-    survives, hit, share, other, grows = (each[part] for each in sides)
-    return SideRates(survives, hit, share, other, cycles_us[part], grows)
+            np.add.at(sides, side, effect)
+        sides[:, 2::2] /= np.bincount(side, weight)[:, None, None]
+        sides[:, 3] = np.minimum(np.maximum(sides[:, 3], 0.0), 1.0)
+        return sides.transpose(1, 2, 0).copy()

@@ -32,6 +32,10 @@ class Occupancy(NamedTuple):
     on: FloatArray
 
 
+Level = tuple[slice, IntArray, IntArray]
+"""Places of sets, of those that they extend, and of the stations by which they do."""
+
+
 class SetTable(NamedTuple):
     """All independent sets of some components of the sensing graph, smaller ones first.
 
@@ -39,17 +43,19 @@ class SetTable(NamedTuple):
         component: The component of each set.
         parent: The set that it extends by one station, itself for the empty ones.
         added: That station.
-        level_ends: How many sets have at most 0, 1, 2, ... stations.
+        levels: The sets of 1, 2, ... stations, with what they extend by what.
         members: 1 for the stations that a set holds, shape (sets, all stations).
         leaves_idle: 1 for stations of the component that it leaves off, with all they sense.
+        either: The last two side by side.
     """
 
     component: IntArray
     parent: IntArray
     added: IntArray
-    level_ends: IntArray
+    levels: tuple[Level, ...]
     members: FloatArray
     leaves_idle: FloatArray
+    either: FloatArray
 
 
 def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
@@ -60,14 +66,13 @@ def exact_occupancy(table: SetTable, activity: FloatArray) -> Occupancy:
         activity: rho of all stations.
     """
     weight = np.ones(len(table.component))
-    for begin, end in zip(table.level_ends, table.level_ends[1:], strict=False):
-        sets = slice(begin, end)
-        weight[sets] = weight[table.parent[sets]] * activity[table.added[sets]]
+    for sets, parent, added in table.levels:
+        np.multiply(weight.take(parent), activity.take(added), out=weight[sets])
     weight /= np.bincount(table.component, weight)[table.component]
     rough = np.rint(weight * ROUGH) / ROUGH
     fine = np.rint((weight - rough) * FINE) / FINE
-    held = np.concatenate([table.leaves_idle, table.members], axis=1)
-    sums = (table.leaves_idle.T * rough) @ held + (table.leaves_idle.T * fine) @ held
+    leaves_idle = table.leaves_idle.T
+    sums = (leaves_idle * rough) @ table.either + (leaves_idle * fine) @ table.either
     count = len(activity)
     idle = sums.diagonal().copy()
     given = sums / np.where(idle > 0.0, idle, 1.0)[:, None]
@@ -122,14 +127,17 @@ def set_table(senses: BoolArray, components: Sequence[tuple[IntArray, Sequence[i
     component = np.array([number for _, number, _ in every])
     closed = senses.astype(np.float64) + np.eye(len(senses))
     leaves_idle = (members @ closed == 0.0) * inside[component]
-    sizes = [size for size, _, _ in every]
+    parents, extras = np.array(parent), np.array(added)
+    ends = np.cumsum(np.bincount([size for size, _, _ in every])).tolist()
+    levels = [slice(begin, end) for begin, end in zip(ends, ends[1:], strict=False)]
     return SetTable(
         component,
-        np.array(parent),
-        np.array(added),
-        np.cumsum(np.bincount(sizes)),
+        parents,
+        extras,
+        tuple((sets, parents[sets], extras[sets]) for sets in levels),
         members,
         leaves_idle,
+        np.concatenate([leaves_idle, members], axis=1),
     )
 
 
@@ -174,12 +182,7 @@ class OccupancyModel:
 
     def __call__(self, activity: FloatArray) -> Occupancy:
         """Return the occupancy for rho, the activity of each station."""
-        count = len(activity)
-        found = Occupancy(np.empty(count), np.empty((count, count)), np.empty((count, count)))
-        for stations, table in self.tables:
-            self._write(found, stations, exact_occupancy(table, activity[stations]))
-        for stations, model in self.beliefs:
-            self._write(found, stations, model(activity[stations]))
+        found = self._of_components(activity)
         if self._are_apart is None:
             return found
         return Occupancy(
@@ -187,6 +190,18 @@ class OccupancyModel:
             np.where(self._are_apart, found.idle, found.clear),
             np.where(self._are_apart, activity * found.idle, found.on),
         )
+
+    def _of_components(self, activity: FloatArray) -> Occupancy:
+        """Return the occupancy, but for what components see of each other."""
+        count = len(activity)
+        if len(self.tables) == 1 and not self.beliefs:
+            return exact_occupancy(self.tables[0][1], activity)
+        found = Occupancy(np.empty(count), np.empty((count, count)), np.empty((count, count)))
+        for stations, table in self.tables:
+            self._write(found, stations, exact_occupancy(table, activity[stations]))
+        for stations, model in self.beliefs:
+            self._write(found, stations, model(activity[stations]))
+        return found
 
     @staticmethod
     def _write(found: Occupancy, stations: IntArray, within: Occupancy) -> None:
@@ -199,11 +214,9 @@ class OccupancyModel:
 def _table_of(
     senses: BoolArray, parts: Sequence[tuple[IntArray, Sequence[int]]]
 ) -> tuple[IntArray, SetTable]:
-    """Return the stations of some components, and the table of their sets."""
-    stations = np.concatenate([part for part, _ in parts])
-    ends = np.cumsum([len(part) for part, _ in parts]).tolist()
-    places = [np.arange(end - len(part), end) for (part, _), end in zip(parts, ends, strict=True)]
-    renamed = [(place, sets) for place, (_, sets) in zip(places, parts, strict=True)]
+    """Return the stations of some components, ascending, and the table of their sets."""
+    stations = np.sort(np.concatenate([part for part, _ in parts]))
+    renamed = [(np.searchsorted(stations, part), sets) for part, sets in parts]
     return stations, set_table(senses[np.ix_(stations, stations)], renamed)
 
 

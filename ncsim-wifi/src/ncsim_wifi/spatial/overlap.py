@@ -64,13 +64,14 @@ def joint_kill(kill: FloatArray, omega: FloatArray, present: FloatArray) -> Floa
         omega: Weight of each set, 0 where impossible.
         present: x_k, shape (relations, stages, helpers), 0 where there is none.
     """
-    killed, total = omega * kill, omega
+    both = np.concatenate([(omega * kill)[None], omega[None]])
+    away = 1.0 - present
     for helper in range(present.shape[2] - 1, -1, -1):
-        there = present[:, :, helper, None]
-        away, half = 1.0 - there, total.shape[2] // 2
-        killed = killed[..., :half] * away + killed[..., half:] * there
-        total = total[..., :half] * away + total[..., half:] * there
-    return np.asarray(np.minimum(killed / np.maximum(total, 1e-300), LARGEST_KILL)[..., 0])
+        half = both.shape[3] // 2
+        without = both[..., :half] * away[:, :, helper, None]
+        both = without + both[..., half:] * present[:, :, helper, None]
+    killed, total = both[..., 0]
+    return np.asarray(np.minimum(killed / np.maximum(total, 1e-300), LARGEST_KILL))
 
 
 class Helped(NamedTuple):

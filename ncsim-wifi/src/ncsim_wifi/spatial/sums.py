@@ -13,23 +13,20 @@ MANY_ROWS = 30
 
 def row_sums(values: FloatArray) -> FloatArray:
     """Return the sums along the last axis, each from its first term to its last."""
+    if values.size < MANY_ROWS * values.shape[-1]:
+        sums: FloatArray = np.add.accumulate(values, axis=-1)[..., -1]
+        return sums
     rows = values.reshape(-1, values.shape[-1])
-    if len(rows) < MANY_ROWS:
-        return np.asarray(np.add.accumulate(values, axis=-1)[..., -1])
     return np.asarray(np.add.reduce(rows.T.copy(), axis=0).reshape(values.shape[:-1]))
 
 
-def halving_sums(values: FloatArray) -> FloatArray:
-    """Return the sums along the last axis, of a power of two of terms: first plus second half."""
-    return halved(values, 1)[..., 0]
+def column_sums(values: FloatArray) -> FloatArray:
+    """Return the sums along the first axis of two, each from its first term to its last.
 
-
-def halved(values: FloatArray, width: int) -> FloatArray:
-    """Return the last axis folded to a width, again and again first plus second half."""
-    while values.shape[-1] > width:
-        half = values.shape[-1] // 2
-        values = values[..., :half] + values[..., half:]
-    return values
+    Args:
+        values: Two columns or more; a single one numpy would add by blocks.
+    """
+    return np.asarray(np.add.reduce(values, axis=0))
 
 
 def row_products(values: FloatArray) -> FloatArray:

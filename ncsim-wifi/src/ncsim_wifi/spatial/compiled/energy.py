@@ -8,7 +8,6 @@ from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray
 from ncsim_wifi.spatial.compiled.state import State, Traffic
-from ncsim_wifi.spatial.compiled.sums import halving_sum
 from ncsim_wifi.spatial.compiled.tables import Constants, Energy, Records
 from ncsim_wifi.spatial.energy import KINDS, TINY, GateMasks, Silenced, Silencing
 from ncsim_wifi.spatial.overlap import LARGEST_ON, LEAST_ON
@@ -55,39 +54,32 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
 @inlined
 def _fill_weights(tables: Silencing, on: FloatArray, row: int, weight: FloatArray) -> float:
     """Fill the weight of each subset of one row; return B."""
-    weight[row, 0] = 1.0
+    weight[0, row] = 1.0
     for member in range(on.shape[1]):
         odds = on[row, member] / (1.0 - on[row, member])
         half = 1 << member
         for held in range(half):
-            weight[row, half + held] = weight[row, held] * odds
-    blocking, every = np.empty(weight.shape[1]), np.empty(weight.shape[1])
-    for held in range(weight.shape[1]):
-        weight[row, held] = weight[row, held] * tables.feasible[row, held]
-        blocking[held] = weight[row, held] * tables.blocks[row, held]
-        every[held] = weight[row, held]
-    return halving_sum(blocking) / halving_sum(every)
+            weight[half + held, row] = weight[held, row] * odds
+    blocking = every = 0.0
+    for held in range(len(weight)):
+        weight[held, row] = weight[held, row] * tables.feasible[held, row]
+        blocking = blocking + weight[held, row] * tables.blocks[held, row]
+        every = every + weight[held, row]
+    return blocking / every
 
 
 @inlined
 def _open_gates(weight: FloatArray, masks: GateMasks, count: int) -> FloatArray:
     """Return P(not silenced | with it) / P(not silenced | without), at most 1, by gate."""
     result = np.ones(count)
-    half = weight.shape[1] // 2
-    terms = np.empty(half * KINDS)
+    sums = np.empty(KINDS)
     for at in range(len(masks.gate)):
-        subsets, row = masks.subsets[at], weight[masks.row[at]]
-        for held in range(half):
-            one, two = row[held], row[half + held]
+        sums[:] = 0.0
+        for held in range(len(weight)):
+            part = weight[held, masks.row[at]]
             for kind in range(KINDS):
-                first, second = subsets[held, kind] * one, subsets[half + held, kind] * two
-                terms[held * KINDS + kind] = first + second
-        width = len(terms) // 2
-        while width >= KINDS:
-            for place in range(width):
-                terms[place] += terms[width + place]
-            width //= 2
-        with_it = terms[0] / (terms[1] + TINY)
-        without = terms[2] / (terms[3] + TINY)
+                sums[kind] += masks.subsets[held, at, kind] * part
+        with_it = sums[0] / (sums[1] + TINY)
+        without = sums[2] / (sums[3] + TINY)
         result[masks.gate[at]] = min(1.0, with_it / max(without, TINY))
     return result
