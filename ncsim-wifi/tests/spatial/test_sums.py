@@ -5,7 +5,14 @@ from operator import add, mul
 
 import numpy as np
 import pytest
-from ncsim_wifi.spatial.sums import MANY_ROWS, row_products, row_sums
+from ncsim_wifi.spatial.sums import (
+    MANY_ROWS,
+    column_sums,
+    products_by,
+    row_products,
+    row_sums,
+    sums_by,
+)
 
 SHAPES = [(rows, terms) for rows in (1, 2, MANY_ROWS - 1, MANY_ROWS, 200) for terms in (1, 7, 50)]
 
@@ -33,3 +40,20 @@ def test_rows_are_multiplied_from_the_first_factor_to_the_last(shape):
     expected = [reduce(mul, row) for row in values.tolist()]
 
     assert row_products(values).tolist() == expected
+
+
+@pytest.mark.parametrize("shape", [(64, 2), (64, 4), (50, 7), (7, 200)])
+def test_columns_are_added_from_the_first_term_to_the_last(shape):
+    values = values_of(shape)
+
+    assert column_sums(values).tolist() == [reduce(add, column) for column in values.T.tolist()]
+
+
+def test_sums_and_products_by_place_go_in_the_order_of_rows():
+    values, place = values_of((40, 3)), np.arange(40) % 3
+
+    of_first = values[place == 0].T.tolist()
+
+    assert sums_by(place, values, 4)[0].tolist() == [reduce(add, column) for column in of_first]
+    assert products_by(place, values[:, 0], 4)[0] == reduce(mul, of_first[0])
+    assert products_by(place, values[:, 0], 4)[3] == 1.0

@@ -6,6 +6,7 @@ independence reproduces.
 Source: MODEL 3.10.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -149,7 +150,7 @@ def _by_boundary(rates: ChainRates, out: FloatArray) -> FloatArray:
     spread[stage[1:], 0, :, stage[1:] + STAGES - 1] = 1.0
     flat = spread.reshape(STATES, *spread.shape[2:])
     into = _into_interior(rates, out)
-    for cells, sources, begin, end in zip(SLICES, SOURCES, PLACES, PLACES[1:], strict=False):
+    for cells, sources, (begin, end) in zip(SLICES, SOURCES, pairwise(PLACES), strict=True):
         terms = flat.take(sources, axis=0)
         terms *= into[:, begin:end]
         np.add.reduce(terms, axis=0, out=flat[cells])

@@ -6,6 +6,7 @@ Source: MODEL 3.3; ideal CSMA of Boorstyn (1987), Liew et al. (2010), Laufer and
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -129,7 +130,7 @@ def set_table(senses: BoolArray, components: Sequence[tuple[IntArray, Sequence[i
     leaves_idle = (members @ closed == 0.0) * inside[component]
     parents, extras = np.array(parent), np.array(added)
     ends = np.cumsum(np.bincount([size for size, _, _ in every])).tolist()
-    levels = [slice(begin, end) for begin, end in zip(ends, ends[1:], strict=False)]
+    levels = [slice(begin, end) for begin, end in pairwise(ends)]
     return SetTable(
         component,
         parents,
