@@ -129,7 +129,10 @@ def _left_by_rivals(
     counts &= ~at_sender | (rival < relation[:, None])
     kill = np.where(hostile.is_strong, 1.0, half_kill(hostile.delta[:, 0]))
     spared = np.where(counts, 1.0 - kill[rival], 1.0)
-    return np.asarray(np.where(sets.subsets, spared[:, None, :], 1.0).prod(axis=2))
+    left = np.ones((len(gate), 1))
+    for place in range(member.shape[1]):
+        left = np.concatenate([left, left * spared[:, place, None]], axis=1)
+    return left
 
 
 class Silencing(NamedTuple):
