@@ -66,3 +66,39 @@ def test_each_missing_parameter_of_a_generator_is_told_once_with_what_it_is(tmp_
         "ncsim new  network: 'side_m' is missing: Side of the square, m",
         "ncsim new  network: 'range_m' is missing: Longest link, m",
     ]
+
+
+FIELD = """
+scenario:
+  network:
+    nodes:
+      - {id: a, compute_capacity: 1, position: {x: 0, y: 0}}
+      - {id: b, compute_capacity: 1, position: {x: 30, y: 0}}
+      - {id: c, compute_capacity: 1, position: {x: 60, y: 0}}
+    links: [{id: mine, from: a, to: b, bandwidth: 3}]
+  dags: [{id: d, tasks: [{id: T, compute_cost: 1}]}]
+  config: {scheduler: round_robin, link_model: wifi}
+"""
+
+
+def test_own_nodes_are_linked_up_to_a_range(tmp_path, capsys):
+    (tmp_path / "field.yaml").write_text(FIELD)
+
+    assert ncsim("new", tmp_path / "x.yaml", "--link", tmp_path / "field.yaml") == 1
+    assert "--link needs --range" in capsys.readouterr().err
+    args = ("--link", tmp_path / "field.yaml", "--range", "30", "-s", "seed=7")
+    assert ncsim("new", tmp_path / "x.yaml", *args) == 0
+
+    made = load_scenario(tmp_path / "x.yaml")
+    links = made.network.links
+    assert [each.id for each in links] == ["mine", "b_a", "b_c", "c_b"]
+    assert links[0].bandwidth_MBps == 3.0
+    assert made.config.seed == 7
+
+
+def test_nodes_without_position_cannot_be_linked(tmp_path, capsys):
+    (tmp_path / "field.yaml").write_text(FIELD.replace(", position: {x: 60, y: 0}", ""))
+
+    args = ("--link", tmp_path / "field.yaml", "--range", "30")
+    assert ncsim("new", tmp_path / "x.yaml", *args) == 1
+    assert "nodes without position: c" in capsys.readouterr().err

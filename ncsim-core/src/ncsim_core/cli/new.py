@@ -57,6 +57,14 @@ def new(
         str | None,
         typer.Option(metavar="GENERATOR", help="Make a DAG, e.g. fft or layered_random."),
     ] = None,
+    link: Annotated[
+        Path | None,
+        typer.Option(metavar="SCENARIO", help="Link the nodes of this scenario; needs --range."),
+    ] = None,
+    range_m: Annotated[
+        float | None,
+        typer.Option("--range", min=0, metavar="M", help="Longest link of --link (m)."),
+    ] = None,
     settings: Annotated[
         list[str] | None,
         typer.Option(
@@ -71,15 +79,21 @@ def new(
 
     Example: ncsim new big.yaml --network grid -s network.rows=4 -s network.columns=5
     --dags fft -s dags.points=8
+
+    Example: ncsim new linked.yaml --link nodes.yaml --range 60
     """
     from ncsim_core.trace.files import json_text, write_atomically
 
     if path.exists():
         raise ScenarioError(f"{path}: exists already; choose another name")
     is_json = path.suffix.lower() == ".json"
-    if network or dags or settings:
-        scenario = _generated(path.stem, network, dags, settings)
-        text = json_text(scenario.to_document()) if is_json else scenario.to_yaml()
+    if link or network or dags or settings:
+        made = (
+            _linked(link, range_m, settings)
+            if link
+            else _generated(path.stem, network, dags, settings)
+        )
+        text = json_text(made.to_document()) if is_json else made.to_yaml()
     else:
         text = STARTER.format(name=path.stem)
         if is_json:
@@ -88,6 +102,21 @@ def new(
             text = json_text(parse_scenario(text).to_document())
     write_atomically(path, text)
     typer.echo(f"{path} written; try: ncsim run {path}")
+
+
+def _linked(path: Path, range_m: float | None, settings: Sequence[str] | None) -> "Scenario":
+    """Return a scenario with links between all nodes in range of each other."""
+    from ncsim_core.cli.choices import overrides_of
+    from ncsim_core.generators.networks import linked
+    from ncsim_core.scenario.loader import load_scenario
+
+    if range_m is None:
+        raise ScenarioError("--link needs --range M, the length of the longest link")
+    scenario = load_scenario(path, overrides=overrides_of(settings))
+    try:
+        return replace(scenario, network=linked(scenario.network, range_m))
+    except ScenarioError as error:
+        raise ScenarioError(f"{path}: {error}") from error
 
 
 def _generated(

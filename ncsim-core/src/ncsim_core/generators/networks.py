@@ -70,6 +70,30 @@ def network_of(
     return Network(nodes, links)
 
 
+def linked(network: Network, range_m: float) -> Network:
+    """Return a network with a link both ways between all nodes up to ``range_m`` apart.
+
+    Links that are there stay, and no second one is put beside them.
+
+    Raises:
+        ScenarioError: A node has no position.
+    """
+    bare = [node.id for node in network.nodes if node.position is None]
+    if bare:
+        raise ScenarioError(f"nodes without position: {', '.join(bare)}")
+    there = {(link.source, link.target) for link in network.links}
+    names = [node.id for node in network.nodes]
+    positions = [node.position for node in network.nodes if node.position is not None]
+    pairs = [(names[a], names[b]) for a, b in sorted(_within(positions, range_m))]
+    new = [
+        Link(LinkId(f"{a}_{b}"), a, b)
+        for low, high in pairs
+        for a, b in ((low, high), (high, low))
+        if (a, b) not in there
+    ]
+    return Network(network.nodes, (*network.links, *new))
+
+
 def grid(
     rows: int,
     columns: int,
