@@ -117,6 +117,22 @@ config: {{scheduler: {scheduler}, interference: {interference}, interference_rad
     assert f"interference {interference}" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("name", "makespan_s"),
+    [
+        ("simple-demo", 5.501),
+        ("forced-multi-hop", 7.02),
+        ("several-dags", 8),
+        ("shared-link", 10.03),
+    ],
+)
+def test_without_a_radio_the_published_tool_gave_the_same(name, makespan_s):
+    """Makespans of anrg-ncsim 1.0.0, run on the same files."""
+    path = ROOT / "examples" / "published-form" / f"{name}.yaml"
+
+    assert json.loads(ncsim("run", path, "--json").stdout)["makespan_s"] == makespan_s
+
+
 @pytest.mark.parametrize("path", PUBLISHED, ids=lambda path: path.stem)
 def test_what_is_translated_from_the_published_form_is_said(path):
     assert "note:" in ncsim("run", path).stderr

@@ -23,6 +23,10 @@ def explain(
     Walks the binding chain: the last task to end, the input it waited for longest, the task
     that produced it, and so on. The parts sum to the makespan to the microsecond.
 
+    transfer alone: with the route to itself. sharing loss: to other transfers on the slowest link
+    of the route. contention loss: to links with which that link takes turns on the channel. hidden
+    loss: to senders that it does not hear. queue wait: a task was ready, its node busy.
+
     Example: ncsim explain out/
     """
     from ncsim_core.cli.runs import run_of
