@@ -54,10 +54,9 @@ def base_success(
         scene: The active links.
         spared: exp(-h_noise) of each link.
         same_slot: p[u, w].
-        loss: sync[l, w].
+        loss: sync[l, w], 0 where w is not sensed by power (others by CTS: see losses).
     """
     if not scene.settings.terms.same_slot_collisions:
         return np.where(scene.is_alive, spared, 0.0)
-    meets = (same_slot * scene.hears_by_power)[scene.station]  # others by CTS: see losses
-    survivors = row_products(1.0 - meets * loss)
+    survivors = row_products(1.0 - same_slot[scene.station] * loss)
     return np.where(scene.is_alive, spared * survivors, 0.0)

@@ -181,7 +181,7 @@ def hidden_loss(
     state = _group_state(statics, traffic, later)
     met = _interferers(scene, statics, traffic, kill, state)
     lethal = logs[2:] / (2.0 * logs[0])
-    windows = _windows(scene, statics, lethal, immune, gates)
+    windows = _windows(statics, lethal, immune, gates)
     survives, missed, answered = _fates(statics, survival(met, windows))
     phi, share = state.phi, state.share
     time = traffic.stages[other] * traffic.cycle_us[other]
@@ -229,7 +229,6 @@ def _group_state(statics: Statics, traffic: Traffic, later: FloatArray) -> "Grou
 
 
 def _windows(
-    scene: Scene,
     statics: Statics,
     lethal: FloatArray,
     immune: FloatArray,
@@ -237,8 +236,7 @@ def _windows(
 ) -> Windows:
     """Return the windows in which interferers must not begin (MODEL 3.8)."""
     hostile = statics.hostile
-    protected_us = scene.protected_us[hostile.link]
-    left_us, borne_us = windows_of(statics.window_us, protected_us, lethal)
+    left_us, borne_us = windows_of(statics.window_us, statics.protected_us, lethal)
     if statics.handshakes is not None:
         left_us = np.concatenate([left_us, statics.handshakes.noticed_us[None]])
     return Windows(left_us, borne_us, immune, hostile.is_strong, *gates, statics.longest_us)
@@ -346,7 +344,7 @@ def _ack_extension_us(
     hostile = statics.hostile
     each_us = scene.ack_us * (1.0 - traffic.loss) * traffic.attempts
     answers, link = statics.answers_of, statics.answers_of.link
-    harm_us = statics.ack_kill[hostile.link[answers.relation], link] * each_us[link]
+    harm_us = statics.answer_kill * each_us[link]
     extension_us = np.bincount(answers.relation, harm_us, minlength=len(hostile))
     is_harmful = kill >= scene.settings.approximations.ack_extension_kill
     return np.where(is_harmful & ~statics.stops_at_cts, extension_us, 0.0)

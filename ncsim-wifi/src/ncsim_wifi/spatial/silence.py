@@ -33,11 +33,13 @@ class Heard(NamedTuple):
     """What stations make of exchanges, whatever else they do; shape (links, stations).
 
     Args:
+        senses: 1 where stations sense each other, shape (stations, stations).
         answered_us: Their silence after data whose acknowledgement they hear, 0 after others.
         unheard: 1 where they do not hear it.
         noticed_us: Their silence after a frame that they noticed, without acknowledgement.
     """
 
+    senses: FloatArray
     answered_us: FloatArray
     unheard: FloatArray
     noticed_us: FloatArray
@@ -48,7 +50,7 @@ def heard_of(scene: Scene) -> Heard:
     overhead_us = scene.overhead_us[:, None]
     hears, decodes = (each.astype(np.float64) for each in (scene.hears_receiver, scene.decodes))
     noticed_us = decodes * overhead_us + (1.0 - decodes) * (AIFS_us + EIFS_AFTER_LOSS_us)
-    return Heard(hears * overhead_us, 1.0 - hears, noticed_us)
+    return Heard(scene.senses.astype(np.float64), hears * overhead_us, 1.0 - hears, noticed_us)
 
 
 def silence_us(heard: Heard, missed: FloatArray) -> FloatArray:
@@ -87,7 +89,7 @@ def silence_of(
         return Silence(overhead_us, np.zeros_like(clear))
     per_station_us = scene.station_means(attempts, per_link_us)
     degree = scene.degree
-    sums_us = row_sums(per_station_us * scene.senses)
+    sums_us = row_sums(per_station_us * heard.senses)
     mean_us = np.where(degree > 0.0, sums_us / np.maximum(degree, 1.0), overhead_us)
-    deviation_us = EIFS_WEIGHT * (per_station_us - mean_us[:, None]) * scene.senses
+    deviation_us = EIFS_WEIGHT * (per_station_us - mean_us[:, None]) * heard.senses
     return Silence(mean_us, deviation_us)

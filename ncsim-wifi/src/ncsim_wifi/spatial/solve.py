@@ -178,7 +178,7 @@ class FixedPoint:
         statics = self._statics
         scene, sending = self._scene, traffic.sending
         spared = far_noise_survival(scene, statics.far_mW, sending)
-        base = base_success(scene, spared, attempts.same_slot, statics.same_slot_loss)
+        base = base_success(scene, spared, attempts.same_slot, statics.sensed_loss)
         if len(statics.others.link):
             base = base * others_survival(scene, statics.others, sending, traffic.times.on_air_us)
         base = base * self._aware(traffic) * self._fields_survival(traffic, attempts)
@@ -299,9 +299,8 @@ class FixedPoint:
     def _partner_collisions(self, traffic: Traffic, during: FloatArray) -> FloatArray:
         """Return what same-slot collisions with partners by summed power leave (MODEL 3.6)."""
         hostile = self._statics.hostile
-        own = self._scene.station[hostile.link]
-        meets = traffic.tau[hostile.station] * self._clear[own, hostile.station]
-        lost = meets * (1.0 - during) * self._statics.same_slot_loss[hostile.link, hostile.station]
+        meets = traffic.tau[hostile.station] * self._clear[self._statics.own, hostile.station]
+        lost = meets * (1.0 - during) * self._statics.relation_loss
         spared = 1.0 - np.minimum(lost, LARGEST_ON)
         return products_by(hostile.link, spared, len(self._scene.links))
 

@@ -63,7 +63,10 @@ class Statics:
         far_mW: Power of stations that only raise the noise, shape (links, stations).
         others: Harmful stations beyond the nearest.
         same_slot_loss: sync[l, w].
-        ack_kill: 1 - exp(-h_ack[l, k]).
+        sensed_loss: The same, 0 of stations that the sender does not sense.
+        relation_loss: The same of the interferer of each relation.
+        protected_us: V_p of the link of each relation.
+        answer_kill: 1 - exp(-h_ack[l, k]) of the following.
         answers_of: Whose acknowledgements may prolong frames of the interferer of a relation.
         acks: Who suffers from whose acknowledgements.
         deaf_to_ack: Part of its own acknowledgements that a sender loses to stations that it does
@@ -91,7 +94,10 @@ class Statics:
     far_mW: FloatArray
     others: Others
     same_slot_loss: FloatArray
-    ack_kill: FloatArray
+    sensed_loss: FloatArray
+    relation_loss: FloatArray
+    protected_us: FloatArray
+    answer_kill: FloatArray
     answers_of: AnswersOf
     acks: AckRelations
     deaf_to_ack: FloatArray
@@ -106,6 +112,8 @@ def statics_of(scene: Scene) -> Statics:
     near = near_interferers(scene, is_hidden)
     hostile = hostile_relations(scene, near)
     hazards = ack_hazard(scene, near.noise_mW)
+    same_slot = same_slot_loss(scene, near.noise_mW)
+    answers = AnswersOf(*np.nonzero(scene.link_of_station[hostile.station]))
     own = scene.station[hostile.link]
     alone = hostile.delta[:, 0]
     handshakes = handshakes_of(scene, hostile, RTS_RATIO_dB) if scene.settings.rts_cts else None
@@ -128,9 +136,12 @@ def statics_of(scene: Scene) -> Statics:
         _hears_cts_of(scene, own, hostile.station),
         near.far_mW,
         near.others,
-        same_slot_loss(scene, near.noise_mW),
-        -np.expm1(-hazards),
-        AnswersOf(*np.nonzero(scene.link_of_station[hostile.station])),
+        same_slot,
+        same_slot * scene.hears_by_power[scene.station],
+        same_slot[hostile.link, hostile.station],
+        scene.protected_us[hostile.link],
+        -np.expm1(-hazards[hostile.link[answers.relation], answers.link]),
+        answers,
         ack_relations(scene, hostile, hazards, is_hidden & ~scene.senses[:, scene.station]),
         deaf_to_ack(scene),
         *_summed_power(scene, hostile),

@@ -38,12 +38,10 @@ class RouteAlone(NamedTuple):
     Args:
         rate_MBps: What it gets, by the clique rule.
         decisive: The slowest hop of the tightest clique.
-        coupled_MBps: What the coupled model makes of it.
     """
 
     rate_MBps: float
     decisive: LinkIndex
-    coupled_MBps: float
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,8 @@ class Paths:
         plant: Those on the radio.
         place: The place of each link in the plant, -1 for wired ones.
         bandwidth_MBps: Clean bandwidth of each link.
-        known: What is known of routes.
+        known: What routes get alone.
+        coupled_MBps: What the coupled model makes of these, where that was asked.
         scenes: Latest scenes; transfers come and go on links that others use anyway.
     """
 
@@ -62,6 +61,7 @@ class Paths:
     place: Sequence[int]
     bandwidth_MBps: Sequence[float]
     known: dict[Route, RouteAlone] = field(default_factory=dict, compare=False)
+    coupled_MBps: dict[Route, float] = field(default_factory=dict, compare=False)
     scenes: ModelCache = field(default_factory=partial(ModelCache, MAX_KEPT_SCENES), compare=False)
 
     def scene(self, places: tuple[int, ...]) -> tuple[Scene, Statics]:
@@ -89,10 +89,15 @@ class Paths:
                 slowest = min(clique, key=lambda hop: (clean_MBps[hop], hop))
                 limits.append((limit_MBps, on_air[slowest]))
         rate_MBps, at = min(limits)
+        return RouteAlone(rate_MBps, route[at])
+
+    def coupled_alone_MBps(self, route: Route) -> float:
+        """Return what the coupled model makes of a transfer alone, worked out once."""
         if len(route) == 1:
-            return RouteAlone(rate_MBps, route[at], rate_MBps)
-        ((coupled_MBps, _),) = self.coupled([route])
-        return RouteAlone(rate_MBps, route[at], coupled_MBps)
+            return self.route_alone(route).rate_MBps
+        if route not in self.coupled_MBps:
+            ((self.coupled_MBps[route], _),) = self.coupled([route])
+        return self.coupled_MBps[route]
 
     def rates(self, routes: Sequence[Route]) -> dict[Route, tuple[float, LinkIndex]]:
         """Return rate and decisive link of each of several transfers that influence each other.
@@ -102,11 +107,12 @@ class Paths:
         """
         alone = {route: self.route_alone(route) for route in dict.fromkeys(routes)}
         if len(routes) == 1:
-            return {route: (each.rate_MBps, each.decisive) for route, each in alone.items()}
+            return dict(alone)
         coupled = dict(zip(routes, self.coupled(routes), strict=True))
         answer = {}
         for route, (rate_MBps, decisive) in coupled.items():
-            ratio = rate_MBps / alone[route].coupled_MBps if alone[route].coupled_MBps else 0.0
+            alone_MBps = self.coupled_alone_MBps(route)
+            ratio = rate_MBps / alone_MBps if alone_MBps else 0.0
             answer[route] = (alone[route].rate_MBps * min(1.0, ratio), decisive)
         return self._within_bandwidth(routes, answer)
 

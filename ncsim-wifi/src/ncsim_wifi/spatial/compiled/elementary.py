@@ -23,8 +23,8 @@ from ncsim_wifi.spatial.elementary import (
 
 @inlined
 def exp(exponent: float) -> float:
-    """Return e to a power, as if that were at least -700 and at most 700."""
-    rest = min(max(exponent, -LARGEST_EXP), LARGEST_EXP)
+    """Return e to a power of up to 700, as if that were at least -700."""
+    rest = max(exponent, -LARGEST_EXP)
     whole = np.rint(rest * PER_LN2)
     rest = rest - whole * LN2_HIGH
     rest = rest - whole * LN2_LOW
@@ -38,10 +38,9 @@ def exp(exponent: float) -> float:
 @inlined
 def log(value: float) -> float:
     """Return the natural logarithm, as if the value were at least 2^-1000."""
-    mantissa, power = math.frexp(max(value, LEAST_LOG))
-    if mantissa < SQRT_HALF:
-        mantissa, power = mantissa + mantissa, power - 1
-    ratio = (mantissa - 1.0) / (mantissa + 1.0)
+    mantissa, exponent = math.frexp(max(value, LEAST_LOG))
+    power = exponent - 0.5
+    ratio = (mantissa - SQRT_HALF) / (mantissa + SQRT_HALF)
     z = ratio * ratio
     above = ((z * LOG_ABOVE[0] + LOG_ABOVE[1]) * z + LOG_ABOVE[2]) * z + LOG_ABOVE[3]
     below = ((z * LOG_BELOW[0] + LOG_BELOW[1]) * z + LOG_BELOW[2]) * z + LOG_BELOW[3]

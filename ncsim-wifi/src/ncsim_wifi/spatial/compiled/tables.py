@@ -258,7 +258,9 @@ def _meetings(scene: Scene, statics: Statics) -> Records:
         same_slot_loss=statics.same_slot_loss,
         far_mW=statics.far_mW,
         deaf_to_ack=statics.deaf_to_ack,
-        **statics.heard._asdict(),
+        answered_us=statics.heard.answered_us,
+        unheard=statics.heard.unheard,
+        noticed_us=statics.heard.noticed_us,
     )
     if handshakes is not None:
         unread = handshakes.unread
@@ -282,7 +284,7 @@ def _hidden(statics: Statics, joint: JointStages) -> Hidden:
             HARM,
             one=answers.relation,
             two=answers.link,
-            kill=statics.ack_kill[hostile.link[answers.relation], answers.link],
+            kill=statics.answer_kill,
         ),
         records(len(joint.relations), PAIR, one=joint.relations, two=joint.side[joint.relations]),
         joint.station,
