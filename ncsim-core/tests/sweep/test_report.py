@@ -119,6 +119,7 @@ def test_latex_is_booktabs_with_special_characters_escaped():
 
     assert text.splitlines() == [
         "% 50% of it",
+        r"% \usepackage{booktabs}",
         r"\begin{tabular}{rl}",
         r"\toprule",
         r"a\_b & c \\",

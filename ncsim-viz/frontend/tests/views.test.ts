@@ -5,6 +5,7 @@ import { busiest, Page } from "../src/app/page";
 import { causesOf } from "../src/app/inspector";
 import { moved, stretch } from "../src/app/replay";
 import { K, type Run } from "../src/data/run";
+import type { Study } from "../src/data/study";
 import { activityOf } from "../src/draw/activity";
 import { tickSeconds, ticks } from "../src/draw/format";
 import { START, Store } from "../src/state";
@@ -14,6 +15,7 @@ import { overview } from "../src/views/overview";
 import { marksOf } from "../src/views/marks";
 import { inForce, treads } from "../src/views/rates";
 import { slackOf } from "../src/views/slack";
+import { cellWidth } from "../src/views/sweep_winners";
 import { made, random, read } from "./made";
 
 const us = 1e6;
@@ -224,5 +226,14 @@ test("ticks differ in their printed digits, however small their distance", () =>
     const all = ticks(from, from + 10 ** (1 + next() * 6), 8);
     const words = all.map((at) => tickSeconds(at, all[1] - all[0]));
     expect(new Set(words).size).toBe(all.length);
+  }
+});
+
+test("the winners of a study have room on a narrow screen, too", () => {
+  const policies = ["heft", "cpop", "round_robin", "dice"];
+  const columns = ["seed", ...policies, "solo_winners", "full_winners", "inversion", "regret", "slowdown"];
+  const study = { factors: [], winners: { columns, rows: [[1, 1, 1, 2, 3, "heft", "heft", false, 0, 2]], heads: 1 } } as unknown as Study;
+  for (const width of [320, 420, 799, 800, 1400]) {
+    expect(cellWidth(study, { width, height: 500, top: 0, bottom: 500 })).toBeGreaterThan(40);
   }
 });

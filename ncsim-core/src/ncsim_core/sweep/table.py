@@ -84,7 +84,7 @@ class Table:
         return "\n".join([f"**{self.title}**", "", *lines] if self.title else lines)
 
     def to_latex(self, digits: int = DIGITS) -> str:
-        """Return a LaTeX table in the style of booktabs, its title as a comment above it."""
+        """Return a LaTeX table for the package booktabs, its title as a comment above it."""
         marks = "".join("r" if is_right else "l" for is_right in self.numeric)
         lines = [
             " & ".join(map(escaped_for_latex, row)) + r" \\"
@@ -93,6 +93,7 @@ class Table:
         return "\n".join(
             [
                 *([f"% {' '.join(self.title.split())}"] if self.title else []),
+                r"% \usepackage{booktabs}",
                 f"\\begin{{tabular}}{{{marks}}}",
                 r"\toprule",
                 lines[0],

@@ -9,8 +9,8 @@ import type { Box, Cell, Context, Table, View } from "./view";
 
 const ROW = 30;
 const TOP = 96;
-/** Width of the list at the left: less where there is little. */
-const sideOf = (box: Box): number => (box.width < 1000 ? 190 : 250);
+/** Width of the list at the left: less where there is little, none where the rates would have no room. */
+const sideOf = (box: Box): number => (box.width < 700 ? 0 : box.width < 1000 ? 190 : 250);
 
 /** The recalculation in focus: selected, or the last one at the playhead. */
 export function focus(ctx: Context): number {
@@ -55,7 +55,8 @@ function draw(p: Painter, ctx: Context, box: Box): void {
   const [from, to] = run.stepRange(recalc);
   const event = run.rcEvent.data[recalc];
   const at = columnsOf(box);
-  p.text(at.name, 22, `Recalculation ${recalc + 1} of ${run.recalcs}, line ${run.evLine.data[event]}, at ${seconds(run.evTime.data[event])} s`, { fill: colours.ink, size: 15, bold: true });
+  const title = `Recalculation ${recalc + 1} of ${run.recalcs}, line ${run.evLine.data[event]}, at ${seconds(run.evTime.data[event])} s`;
+  p.text(at.name, 22, fitted(title, 0.9 * (box.width - at.name), 15), { fill: colours.ink, size: 15, bold: true });
   p.text(at.name, 46, fitted(`${causeOf(run, recalc)} moved ${count(to - from, "rate")}. Keys [ and ] step by sequence.`, box.width - at.name - 8, 13), { fill: colours.ink, size: 13 });
   const heads: [number, string][] = [[at.name, "transfer"], [at.bars, at.wide > 150 ? "MB/s before ○ and after ●" : "○ → ●"], [at.rates, "before → after MB/s"], [at.finish, "would end s"], [at.why, "bottleneck: contenders, hidden, flows"]];
   for (const [x, text] of heads) p.text(x, TOP - 18, text, { fill: colours.muted, size: 11 });
@@ -97,6 +98,7 @@ function paintList(p: Painter, ctx: Context, recalc: number, box: Box): void {
   const { run, colours } = ctx;
   const [first, last] = listed(box, recalc, run.recalcs);
   const side = sideOf(box);
+  if (!side) return;
   p.rect(0, box.top, side, box.bottom - box.top, { fill: colours.panel });
   p.text(12, box.top + 18, "time s, trigger, rates moved", { fill: colours.muted, size: 11 });
   for (let i = first; i < last; i++) {
@@ -141,7 +143,7 @@ export const cascade: View = {
   hit(ctx, box, x, y) {
     const step = stepUnder(ctx, box, x, y);
     if (step >= 0) return { kind: "transfer", id: ctx.run.stTransfer.data[step] };
-    if (x > sideOf(box) || focus(ctx) < 0) return null;
+    if (x >= sideOf(box) || focus(ctx) < 0) return null;
     const [first, last] = listed(box, focus(ctx), ctx.run.recalcs);
     const row = first + Math.floor((y - box.top - 40 + LIST_ROW / 2) / LIST_ROW);
     return row >= first && row < last ? { kind: "recalc", id: row } : null;

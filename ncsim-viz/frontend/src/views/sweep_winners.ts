@@ -9,11 +9,14 @@ import type { Box, Context } from "./view";
 export const WINNER_ROW = 24;
 export const REGRET_ROW = 24;
 export const REGRET_TOP = 114;
-const LABELS = 250;
-const VERDICT = 290;
+const NARROW = 800;
 
-const cellWidth = (study: Study, box: Box): number =>
-  Math.min(110, (box.width - LABELS - VERDICT) / Math.max(1, winnerParts(study).policies.length));
+/** Where labels end, and what the verdict takes, for which there is no room on a narrow screen. */
+const labelsOf = (box: Box): number => (box.width < NARROW ? 100 : 250);
+const verdictOf = (box: Box): number => (box.width < NARROW ? 12 : 290);
+
+export const cellWidth = (study: Study, box: Box): number =>
+  Math.min(110, (box.width - labelsOf(box) - verdictOf(box)) / Math.max(1, winnerParts(study).policies.length));
 
 /** Where the rows begin: below the names of the policies, which stand upright where cells are narrow. */
 export function winnersTop(study: Study, box: Box): number {
@@ -33,28 +36,31 @@ export function paintWinners(p: Painter, ctx: Context, study: Study, box: Box): 
   const { labels, policies } = winnerParts(study);
   const wide = cellWidth(study, box);
   const top = winnersTop(study, box);
+  const start = labelsOf(box);
   const words = `Ratio to the best ${study.roles?.policy ?? "choice"} under ${String(study.roles?.full ?? "")}; ☆ wins under ${String(study.roles?.solo ?? "")}, ★ wins under ${String(study.roles?.full ?? "")}, ◆ the winners differ`;
   p.text(12, 16, fitted(words, box.width - 24, 12), { fill: colours.ink, size: 12 });
-  p.text(12, top - 12, fitted(labels.join(", "), LABELS - 20), { fill: colours.muted, size: 11 });
+  p.text(12, top - 12, fitted(labels.join(", "), start - 20), { fill: colours.muted, size: 11 });
   policies.forEach((name, i) => {
-    const x = LABELS + (i + 0.5) * wide;
+    const x = start + (i + 0.5) * wide;
     if (top === 60) p.text(x, top - 12, name, { fill: colours.ink, size: 11, anchor: "middle", bold: true });
     else p.shift(x, top - 6, () => p.text(0, 0, fitted(name, 150), { fill: colours.ink, size: 11, bold: true }), -90);
   });
-  p.text(LABELS + policies.length * wide + 12, top - 12, "☆ → ★, regret", { fill: colours.muted, size: 11 });
+  if (box.width >= NARROW) p.text(start + policies.length * wide + 12, top - 12, "☆ → ★, regret", { fill: colours.muted, size: 11 });
   winners.rows.forEach((_, row) => {
     const y = top + row * WINNER_ROW;
-    if (y + WINNER_ROW >= box.top && y <= box.bottom) paintRow(p, ctx, study, row, y, wide);
+    if (y + WINNER_ROW >= box.top && y <= box.bottom) paintRow(p, ctx, study, row, y, box);
   });
 }
 
-function paintRow(p: Painter, ctx: Context, study: Study, row: number, y: number, wide: number): void {
+function paintRow(p: Painter, ctx: Context, study: Study, row: number, y: number, box: Box): void {
   const { colours } = ctx;
+  const wide = cellWidth(study, box);
+  const start = labelsOf(box);
   const cells = rowOf(study.winners as StudyTable, row);
   const { policies } = winnerParts(study);
-  p.text(12, y + 12, fitted(labelOf(study, row), LABELS - 20, 12), { fill: colours.ink, size: 12 });
+  p.text(12, y + 12, fitted(labelOf(study, row), start - 20, 12), { fill: colours.ink, size: 12 });
   policies.forEach((policy, i) => {
-    const x = LABELS + i * wide;
+    const x = start + i * wide;
     const ratio = cells.get(policy);
     if (typeof ratio !== "number") return p.text(x + wide / 2, y + 12, "–", { fill: colours.muted, size: 11, anchor: "middle" });
     const share = Math.min(1, Math.log2(Math.max(1, ratio)) / 2);
@@ -63,10 +69,11 @@ function paintRow(p: Painter, ctx: Context, study: Study, row: number, y: number
     const text = wide > 52 ? `${marks} ${ratio.toFixed(2)}` : marks || (wide > 30 ? ratio.toFixed(1) : "");
     p.text(x + wide / 2, y + 12, text, { fill: onMagnitude(1 - share), size: 11, anchor: "middle", bold: marks !== "" });
   });
+  if (box.width < NARROW) return;
   const inverted = cells.get("inversion") === true || cells.get("inversion") === 1;
   const regret = cells.get("regret");
   const verdict = `${inverted ? "◆ " : ""}${String(cells.get("solo_winners") ?? "–")} → ${String(cells.get("full_winners") ?? "–")}${typeof regret === "number" ? `, ${percent(regret)}` : ""}`;
-  p.text(LABELS + policies.length * wide + 12, y + 12, fitted(verdict, VERDICT - 20, 11), { fill: inverted ? colours.bad : colours.ink, size: 11, bold: inverted });
+  p.text(start + policies.length * wide + 12, y + 12, fitted(verdict, verdictOf(box) - 20, 11), { fill: inverted ? colours.bad : colours.ink, size: 11, bold: inverted });
 }
 
 /** Rows of the regret bars: largest first. */
@@ -96,10 +103,11 @@ export function paintRegret(p: Painter, ctx: Context, study: Study, box: Box): v
   p.rect(12, 78, 24, 12, { fill: colours.categories[5] });
   hatch(p, 12, 78, 24, 12, colours.paper, 6);
   p.text(42, 84, "◆ hatched: rank inversion, another policy wins", { fill: colours.ink, size: 11 });
-  p.rect(342, 78, 24, 12, { fill: colours.categories[0] });
-  p.text(372, 84, "plain: the same policy wins", { fill: colours.ink, size: 11 });
-  const left = LABELS + 20;
-  const wide = box.width - left - 120;
+  const [x, y] = box.width < NARROW ? [12, 94] : [342, 78];
+  p.rect(x, y, 24, 12, { fill: colours.categories[0] });
+  p.text(x + 30, y + 6, "plain: the same policy wins", { fill: colours.ink, size: 11 });
+  const left = labelsOf(box) + 20;
+  const wide = Math.max(40, box.width - left - 120);
   order.forEach((row, i) => {
     const y = REGRET_TOP + i * REGRET_ROW;
     if (y + REGRET_ROW < box.top || y > box.bottom) return;
