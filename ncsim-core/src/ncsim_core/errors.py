@@ -7,8 +7,8 @@ import traceback
 from pathlib import Path
 from typing import Final
 
-OURS: Final = ("ncsim_core", "importlib", "pluggy")
-"""Packages that call plug-ins: what they raise is not where a plug-in went wrong."""
+OURS: Final = ("ncsim_core", "importlib", "pluggy", "hypothesis")
+"""How the packages begin that call plug-ins: what they raise is not where one went wrong."""
 
 
 class NcsimError(Exception):
@@ -53,18 +53,23 @@ def told(error: BaseException) -> str:
     >>> told(ValueError("too small"))
     'ValueError: too small'
     """
+    place = place_of(error)
+    return f"{type(error).__name__}: {error}" + (f" ({place})" if place else "")
+
+
+def place_of(error: BaseException) -> str | None:
+    """Return file and line of the plug-in's own code that an error came through last, if any."""
     frames = [
         (str(frame.f_globals.get("__name__", "")), frame.f_code.co_filename, line)
         for frame, line in traceback.walk_tb(error.__traceback__)
     ]
-    theirs = [each for each in frames if _package(each[0]) not in OURS]
-    text = f"{type(error).__name__}: {error}"
+    theirs = [each for each in frames if not _package(each[0]).startswith(OURS)]
     if not theirs:
-        return text
+        return None
     owner = _package(theirs[0][0])
     module, filename, line = [each for each in theirs if _package(each[0]) == owner][-1]
-    folder = "/".join(module.split(".")[:-1])
-    return f"{text} ({folder}{'/' if folder else ''}{Path(filename).name}, line {line})"
+    folder = "".join(f"{each}/" for each in module.split(".")[:-1])
+    return f"{folder}{Path(filename).name}, line {line}"
 
 
 def _package(module: str) -> str:

@@ -109,6 +109,33 @@ def test_what_a_component_prints_does_not_disturb_its_checks(fake_dist):
     assert result_of("scheduler", "chatty", "hash_seed_changes_nothing").status == "passed"
 
 
+def test_a_failure_in_pytest_is_told_without_the_insides_of_the_kit(planted):
+    members = {"component": "ncsim-planted/planned_nodes_exist"}
+    suite = type("PlantedSuite", (SchedulerSuite,), members)()
+
+    with pytest.raises(pytest.fail.Exception) as failed:
+        suite.test_planned_nodes_exist()
+
+    told = failed.value.msg
+    assert told.startswith("The plan names nodes of the network only.\nno such nodes: {'n1'}")
+    assert not failed.value.pytrace
+
+
+def test_an_error_in_a_plugin_keeps_its_place_under_hypothesis(fake_dist):
+    source = (
+        "from ncsim_core.builtin.schedulers import RoundRobinScheduler\n"
+        "class Picky(RoundRobinScheduler):\n"
+        "    def schedule(self, dag, snapshot):\n"
+        "        return super().schedule(dag, snapshot) if len(dag.tasks) > 2 else 1 / 0\n"
+    )
+    declaration = declaring('"scheduler", "picky", "picky_code:Picky", "Picky."')
+    fake_dist("picky-dist", {"picky_declaration": declaration, "picky_code": source})
+
+    detail = result_of("scheduler", "picky", "plan_is_total").detail
+
+    assert detail.startswith("ZeroDivisionError: division by zero (picky_code.py, line 4)")
+
+
 def test_component_that_refuses_everything_is_no_success(fake_dist):
     source = (
         "from ncsim_core.errors import ScenarioError\n"

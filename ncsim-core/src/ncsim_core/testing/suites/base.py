@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 from typing_extensions import override
 
-from ncsim_core.errors import NcsimError
+from ncsim_core.errors import NcsimError, place_of
 from ncsim_core.registry import Registry, get_registry
 from ncsim_core.testing.checking import PREFIX, REFUSALS, check, described, result_of
 from ncsim_core.testing.child import answers_in_new_process
@@ -207,6 +207,8 @@ def _test_of(one: Check) -> Callable[[ComponentSuite], None]:
             pytest.xfail(result.detail)
         if result.status == "unexpected_pass":
             pytest.fail(f"[XPASS(strict)] {result.detail}")
+        if isinstance(result.error, AssertionError) and place_of(result.error) is None:
+            pytest.fail(f"{(one.body.__doc__ or '').strip()}\n{result.detail}", pytrace=False)
         if result.error is not None:
             raise result.error
 
