@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
+from ncsim_wifi.spatial.sums import starts_of
 
 if TYPE_CHECKING:
     from ncsim_wifi.spatial.occupancy import Occupancy
@@ -66,7 +67,7 @@ class CliqueBelief:
     def by_station(self) -> tuple[IntArray, IntArray]:
         """Return the entries in the order of stations, and where those of each begin."""
         order = np.argsort(self.station, kind="stable")
-        return order, np.flatnonzero(np.diff(self.station[order], prepend=-1))
+        return order, starts_of(self.station[order])
 
     @cached_property
     def _is_far(self) -> FloatArray:

@@ -15,7 +15,7 @@ from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.elementary import PER_e_dB, exp, log
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.scene import Scene
-from ncsim_wifi.spatial.sums import products_by, row_sums
+from ncsim_wifi.spatial.sums import products_by, row_sums, starts_of
 
 FAR_ACTIVITY = 0.62
 FAR_ACTIVITY_PER_NEIGHBOUR = 0.75
@@ -111,7 +111,7 @@ def _others(scene: Scene, harm: FloatArray) -> Others:
     """Return the harm of stations beyond the nearest, by groups that exclude each other."""
     everybody = np.broadcast_to(np.arange(scene.station_count), harm.shape)
     link, station, group = grouped(harm > 0.0, everybody, scene.senses)
-    first = np.flatnonzero(np.diff(group, prepend=-1))
+    first = starts_of(group)
     return Others(link, station, group, harm[link, station], link[first])
 
 

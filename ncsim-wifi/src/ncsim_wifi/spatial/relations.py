@@ -5,13 +5,18 @@ Source: MODEL 2.
 
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.hazard import hazard
 from ncsim_wifi.spatial.near import NOBODY, Near, grouped
 from ncsim_wifi.spatial.scene import Scene
+from ncsim_wifi.spatial.sums import starts_of
+
+Number = TypeVar("Number", np.float64, np.int64)
 
 SURVIVAL_DISCOUNT = 0.6
 MAX_JOINT_HAZARD = 10.0
@@ -55,7 +60,7 @@ class Hostile:
     @cached_property
     def group_starts(self) -> IntArray:
         """Return the first relation of each group."""
-        return np.flatnonzero(np.diff(self.group, prepend=-1))
+        return starts_of(self.group)
 
     @cached_property
     def links(self) -> IntArray:
@@ -65,7 +70,7 @@ class Hostile:
     @cached_property
     def link_starts(self) -> IntArray:
         """Return the first relation of each of these."""
-        return np.flatnonzero(np.diff(self.link, prepend=-1))
+        return starts_of(self.link)
 
     @cached_property
     def link_of_group(self) -> IntArray:
@@ -133,20 +138,27 @@ def hostile_relations(scene: Scene, near: Near) -> Hostile:
     if not settings.terms.hidden_loss:
         kept[:] = False
     link, place, group = grouped(kept, near.station, scene.senses)
-    helper_station = near.station[link[:, None], helper[link, place]]
+    at = link * near.station.shape[1] + place
+    helper = _rows_of(helper, at)
+    helper_station = near.station[link[:, None], helper]
     return Hostile(
         link,
-        near.station[link, place],
-        is_strong[link, place],
-        delta[link, place],
-        omega[link, place],
-        np.where(helper[link, place] == NOBODY, NOBODY, helper_station),
+        near.station.take(at),
+        is_strong.take(at),
+        _rows_of(delta, at),
+        _rows_of(omega, at),
+        np.where(helper == NOBODY, NOBODY, helper_station),
         group,
-        by_cts_only[link, place],
-        locks[link, place],
-        partner[link, place],
-        partner_kill[link, place],
+        by_cts_only.take(at),
+        locks.take(at),
+        _rows_of(partner, at),
+        _rows_of(partner_kill, at),
     )
+
+
+def _rows_of(values: NDArray[Number], at: IntArray) -> NDArray[Number]:
+    """Return some rows of values by link and place, shape (rows, any)."""
+    return values.reshape(-1, values.shape[2]).take(at, axis=0)
 
 
 def _strong(scene: Scene, near: Near, locks: BoolArray) -> tuple[BoolArray, BoolArray]:

@@ -113,26 +113,31 @@ class Scene:
         return self.plant.on_air_us[self.links]
 
     @cached_property
+    def at_station_dBm(self) -> FloatArray:
+        """Return P(w, u), shape (stations w, stations u)."""
+        return self.plant.power_dBm[self.station_node[:, None], self.station_node]
+
+    @cached_property
     def at_station_mW(self) -> FloatArray:
         """Return P(w, u), shape (stations w, stations u); 0 on the diagonal."""
-        power_mW = self.plant.power_mW[np.ix_(self.station_node, self.station_node)]
+        power_mW = self.plant.power_mW[self.station_node[:, None], self.station_node]
         np.fill_diagonal(power_mW, 0.0)
         return power_mW
 
     @cached_property
     def at_receiver_mW(self) -> FloatArray:
         """Return I[w, l], shape (stations, links); includes each link's own signal."""
-        return self.plant.power_mW[np.ix_(self.station_node, self.receiver_node)]
+        return self.plant.power_mW[self.station_node[:, None], self.receiver_node]
 
     @cached_property
     def receiver_at_station_dBm(self) -> FloatArray:
         """Return P(rx_l, w), shape (links, stations)."""
-        return self.plant.power_dBm[np.ix_(self.receiver_node, self.station_node)]
+        return self.plant.power_dBm[self.receiver_node[:, None], self.station_node]
 
     @cached_property
     def receiver_at_receiver_mW(self) -> FloatArray:
         """Return Ia[k, l] = P(rx_k, rx_l), shape (links, links)."""
-        return self.plant.power_mW[np.ix_(self.receiver_node, self.receiver_node)]
+        return self.plant.power_mW[self.receiver_node[:, None], self.receiver_node]
 
     @cached_property
     def hears_by_power(self) -> BoolArray:
@@ -151,9 +156,7 @@ class Scene:
 
     @cached_property
     def _sensing(self) -> tuple[BoolArray, BoolArray]:
-        nodes = self.station_node
-        power_dBm = self.plant.power_dBm[np.ix_(nodes, nodes)]
-        by_power: BoolArray = power_dBm >= self.settings.sensing_dBm
+        by_power: BoolArray = self.at_station_dBm >= self.settings.sensing_dBm
         np.fill_diagonal(by_power, val=False)
         by_cts = np.zeros_like(by_power)
         if self.settings.rts_cts:
@@ -178,8 +181,7 @@ class Scene:
         """Return dec[l, w], which stations understand the data frames of which links (MODEL 2)."""
         if self.settings.rts_cts:
             return np.ones((len(self.links), self.station_count), np.bool_)
-        power_dBm = self.plant.power_dBm[np.ix_(self.station_node, self.station_node)]
-        ratio_dB = power_dBm[self.station] - self.settings.noise_dBm
+        ratio_dB = self.at_station_dBm[self.station] - self.settings.noise_dBm
         return np.asarray(ln_hazard(self.scheme[:, None], ratio_dB) < MAX_LN_HAZARD_TO_DECODE)
 
     @cached_property

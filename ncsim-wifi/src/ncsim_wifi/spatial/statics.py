@@ -172,12 +172,11 @@ def _helped(scene: Scene, hostile: Hostile) -> Helped:
 
 def _rivals(scene: Scene, hostile: Hostile) -> Rivals:
     """Return pairs of relations of a link in different groups, the first sensing the second."""
-    starts = hostile.link_starts
-    last = np.append(starts[1:], len(hostile))[np.searchsorted(hostile.links, hostile.link)]
-    first = starts[np.searchsorted(hostile.links, hostile.link)]
-    one = np.repeat(np.arange(len(hostile)), last - first)
-    ends = np.cumsum(last - first)
-    two = np.arange(len(one)) - np.repeat(ends - last, last - first)
+    link = hostile.link
+    first, last = link.searchsorted(link, "left"), link.searchsorted(link, "right")
+    others = last - first
+    one = np.arange(len(link)).repeat(others)
+    two = np.arange(len(one)) - (others.cumsum() - last).repeat(others)
     counts = scene.senses[hostile.station[one], hostile.station[two]]
     counts &= hostile.group[one] != hostile.group[two]
     one, two = one[counts], two[counts]

@@ -61,3 +61,14 @@ def products_by(place: IntArray, factors: FloatArray, count: int) -> FloatArray:
     products = np.ones(count)
     np.multiply.at(products, place, factors)
     return products
+
+
+def starts_of(number: IntArray) -> IntArray:
+    """Return where each run of equal numbers begins.
+
+    >>> starts_of(np.array([3, 3, 5, 5, 5, 9])).tolist()
+    [0, 2, 5]
+    """
+    is_first = np.ones(len(number), np.bool_)
+    np.not_equal(number[1:], number[:-1], out=is_first[1:])
+    return is_first.nonzero()[0]

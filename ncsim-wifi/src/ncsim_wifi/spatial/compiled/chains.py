@@ -159,7 +159,9 @@ def _weigh(spread: FloatArray, boundary: FloatArray, joint: FloatArray, chain: i
     for a in range(STAGES):
         for b in range(STAGES):
             cell = spread[a, b, 0] * boundary[0]
-            for origin in range(1, BOUNDARY):
+            for origin in range(1, b + 1):  # (0, b) and (a, 0) lead to no lower stage
+                cell = cell + spread[a, b, origin] * boundary[origin]
+            for origin in range(STAGES, STAGES + a):
                 cell = cell + spread[a, b, origin] * boundary[origin]
             joint[chain, a, b] = cell
             total = total + cell
