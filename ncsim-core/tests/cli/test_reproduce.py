@@ -157,3 +157,19 @@ def test_a_trace_without_its_scenario_cannot_be_reproduced(tmp_path):
     (out / "scenario.yaml").unlink()
 
     assert "holds no scenario.yaml" in str(ncsim("reproduce", out / "trace.jsonl").exception)
+
+
+def test_a_run_of_a_study_is_held_to_what_the_study_says(tmp_path):
+    (tmp_path / "small.yaml").write_text(SCENARIO)
+    (tmp_path / "sweep.yaml").write_text(
+        "sweep:\n  base: {scenario: small.yaml}\n  vary: {routing: [direct]}\n"
+    )
+    study = tmp_path / "study"
+    swept = ncsim("sweep", tmp_path / "sweep.yaml", "-o", study, "--executor", "serial")
+    assert swept.exit_code == 0, swept.output
+
+    told = ncsim("reproduce", f"{study}@routing=direct")
+
+    assert told.exit_code == 0, told.exception
+    assert "reproduced; completed, makespan 3.500000 s, as in the study" in told.output
+    assert "say which of its runs" in str(ncsim("reproduce", study).exception)

@@ -14,22 +14,42 @@ if TYPE_CHECKING:
 
 
 def reproduce(
-    run: Annotated[Path, typer.Argument(metavar="RUN", help="Output folder of a run.")],
+    run: Annotated[
+        str,
+        typer.Argument(
+            metavar="RUN",
+            help="Output folder of a run, or STUDY@COLUMN=VALUE,... for one of a study.",
+        ),
+    ],
 ) -> None:
     """Run the scenario of a run's folder again and compare traces, byte for byte, and metrics.
 
     If they differ, it says where they part first, which packages are of another version, and
-    whether scenario or metrics were changed; it leaves with exit code 1.
+    whether scenario or metrics were changed; it leaves with exit code 1. A study keeps no traces:
+    the makespan of a run of it is compared.
 
     Example: ncsim reproduce out/
     """
     from ncsim_core.cli.reproducing import reproduction_of
 
-    reproduction = reproduction_of(run)
-    for line in _lines(run, reproduction):
+    if "@" in run and not Path(run).exists():
+        typer.echo(_of_study(run))
+        return
+    folder = Path(run)
+    reproduction = reproduction_of(folder)
+    for line in _lines(folder, reproduction):
         typer.echo(line)
     if reproduction.faults:
         raise typer.Exit(ExitCode.INVALID_INPUT)
+
+
+def _of_study(text: str) -> str:
+    """Return that a run of a study came out as the study says; anything else is an error."""
+    from ncsim_core.cli.runs import run_of
+
+    end = run_of(text).end
+    makespan = "" if end.makespan_us is None else f", makespan {end.makespan_us / 1e6:.6f} s"
+    return f"{text}: reproduced; {end.status}{makespan}, as in the study"
 
 
 def _lines(run: Path, reproduction: "Reproduction") -> "Iterator[str]":

@@ -12,6 +12,7 @@ from ncsim_core.api import RunResult, simulate
 from ncsim_core.errors import PluginError, ScenarioError
 from ncsim_core.registry import get_registry
 from ncsim_core.scenario.loader import load_scenario
+from ncsim_core.sweep.store import STORE_NAME
 from ncsim_core.trace.fields import RECORDS
 from ncsim_core.trace.output import METRICS_NAME, SCENARIO_NAME
 from ncsim_core.trace.reader import opened, read_trace
@@ -50,6 +51,11 @@ def reproduction_of(folder: Path) -> Reproduction:
         ScenarioError: The folder holds no scenario, or a wrong one.
         PluginError: A package that took part in the run is not installed.
     """
+    if (folder / STORE_NAME).exists():
+        raise ScenarioError(
+            f"{folder}: is a study, which keeps no traces; say which of its runs, as in "
+            f"ncsim reproduce {folder}@seed=1"
+        )
     with read_trace(folder) as reader:
         preamble, trace = reader.preamble, reader.path
     path = trace.parent / SCENARIO_NAME
