@@ -104,6 +104,14 @@ def test_two_columns_are_compared_pair_by_pair(study):
     assert case["ratio_high"] == mean_interval([each["ratio"] for each in own]).high
 
 
+def test_columns_that_pair_one_run_with_several_are_refused(study):
+    code, _, err = ncsim("compare", f"{study}@scheduler=round_robin", f"{study}@interference=none")
+
+    assert code == 1
+    assert "the first of the two means several runs for each of the other" in err
+    assert "say which: interference=none|csma_bianchi" in err
+
+
 def test_columns_that_were_not_named_pair_the_runs(study):
     _, out, _ = ncsim("compare", f"{study}@seed=1", f"{study}@seed=2")
 

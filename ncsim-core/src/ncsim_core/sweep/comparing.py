@@ -12,6 +12,7 @@ from ncsim_core.metrics.statistics import (
     slowdown,
     winner_set,
 )
+from ncsim_core.sweep.formatting import shown_value
 from ncsim_core.sweep.plan import canonical
 from ncsim_core.sweep.report import grouped
 from ncsim_core.sweep.selecting import SEED, Selected
@@ -44,9 +45,11 @@ def pairs_table(
         compared: Columns that tell them apart; the others pair them.
 
     Raises:
-        ScenarioError: No run of one has its like in the other.
+        ScenarioError: No run of one has its like in the other, or one has several.
     """
     columns = [column for column in first[0].values if column not in compared]
+    for name, runs in zip(NAMES, (first, second), strict=True):
+        _refuse_several(name, runs, columns, compared)
     likes = {_key(run, columns): run for run in second}
     pairs = [
         Pair(
@@ -61,6 +64,26 @@ def pairs_table(
         raise ScenarioError(f"no two runs agree in {', '.join(columns)}; nothing can be compared")
     rows = tuple(_row(pair) for pair in pairs)
     return Table((*columns, *MEASURED), rows, "makespan, second against first", heads=len(columns))
+
+
+def _refuse_several(
+    name: str, runs: Sequence[Selected], columns: Sequence[str], compared: Mapping[str, str]
+) -> None:
+    """Raise if two runs of one side differ in nothing by which they are paired.
+
+    Raises:
+        ScenarioError: They do; the message says what to name besides.
+    """
+    if len({_key(run, columns) for run in runs}) == len(runs):
+        return
+    still_open = {
+        column: list(dict.fromkeys(shown_value(run.values[column]) for run in runs))
+        for column in compared
+    }
+    listed = "; ".join(f"{c}={'|'.join(there)}" for c, there in still_open.items() if there[1:])
+    raise ScenarioError(
+        f"the {name} of the two means several runs for each of the other; say which: {listed}"
+    )
 
 
 def pairs_cases(table: Table, confidence: float = 0.95) -> Table:
