@@ -44,6 +44,16 @@ def test_every_verb_of_the_table_is_there_and_explains_itself(name):
     assert explained.stdout.startswith(f"Usage: ncsim {name} ")
 
 
+def test_an_interrupted_verb_says_that_nothing_was_written(monkeypatch, capsys):
+    def interrupted(*_args, **_more):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("ncsim_core.scenario.loader.load_scenario", interrupted)
+
+    assert code_of("new", "x.yaml", "--link", "y.yaml", "--range", "3") == 130
+    assert capsys.readouterr().err == "interrupted; nothing was written\n"
+
+
 def test_a_misspelt_verb_gets_a_suggestion(capsys):
     assert code_of("valdate") == 1
     assert "Did you mean 'validate'" in capsys.readouterr().err

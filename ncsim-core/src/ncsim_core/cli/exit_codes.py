@@ -11,3 +11,7 @@ class ExitCode(IntEnum):
     RUN_DID_NOT_COMPLETE = 2
     INTERNAL_ERROR = 3
     INTERRUPTED = 130
+
+
+class Interrupted(Exception):  # noqa: N818 - it is no error
+    """Ctrl-C, on its way past typer."""

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from ncsim_core import __version__
-from ncsim_core.cli.exit_codes import ExitCode
+from ncsim_core.cli.exit_codes import ExitCode, Interrupted
 from ncsim_core.cli.front_page import front_page
 from ncsim_core.errors import EngineError, NcsimError
 
@@ -37,7 +37,7 @@ def exit_code_of(command: Callable[[], object]) -> int:  # noqa: PLR0911 - one p
     except NcsimError as error:
         _complain(str(error))
         return ExitCode.INVALID_INPUT
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Interrupted):
         return _interrupted()
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -66,7 +66,7 @@ def _parsing_stopped(error: Exception) -> int:
 
 
 def _interrupted() -> ExitCode:
-    _complain("interrupted; nothing was written under a final name")
+    _complain("interrupted; nothing was written")
     return ExitCode.INTERRUPTED
 
 

@@ -8,6 +8,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typing_extensions import override
 
+from ncsim_core.cli.exit_codes import Interrupted
 from ncsim_core.cli.front_page import (
     EXAMPLE,
     EXIT_CODES,
@@ -35,6 +36,13 @@ class VerbGroup(TyperGroup):
         super().__init__(**settings)
         for name, summary in summaries().items():
             self.add_command(TyperCommand(name, help=summary, rich_markup_mode=None))
+
+    @override
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # typer would leave with 130 and say nothing
+            raise Interrupted from None
 
     @override
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
