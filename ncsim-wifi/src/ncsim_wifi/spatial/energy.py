@@ -67,6 +67,19 @@ def energy_sets(scene: Scene) -> EnergySets:
     )
 
 
+def subset_products(factors: FloatArray) -> FloatArray:
+    """Return the product over the members of each subset, shape (subsets, rows).
+
+    Args:
+        factors: One for each member, shape (rows, members).
+    """
+    products = np.ones((1 << factors.shape[1], len(factors)))
+    for member, factor in enumerate(factors.T):
+        half = 1 << member
+        np.multiply(products[:half], factor, out=products[half : 2 * half])
+    return products
+
+
 class GateMasks(NamedTuple):
     """The subsets that gates compare: at the sender of each relation, then at the interferer.
 
@@ -93,13 +106,13 @@ def gate_masks(scene: Scene, sets: EnergySets, hostile: Hostile) -> GateMasks:
         if len(sets.station)
         else np.zeros(0, np.int64)
     )
-    held = sets.subsets.T.astype(np.float64)
-    it = (sets.member[row[gate]] == other[gate][:, None]).astype(np.float64) @ held > 0.0
-    free = ~sets.blocks[row[gate]]
+    it = sets.subsets.astype(np.float64) @ (sets.member[row[gate]] == other[gate][:, None]).T
+    is_free = ~sets.blocks[row[gate]].T
     counts = _left_by_rivals(scene, sets, hostile, gate, row[gate])
-    masks = np.empty((free.shape[1], len(free), KINDS))
-    for kind, mask in enumerate((it & free, it, ~it & free, ~it)):
-        masks[:, :, kind] = (mask * counts).T
+    masks = np.empty((*it.shape, KINDS))
+    np.multiply(it, counts, out=masks[..., 1])
+    np.subtract(counts, masks[..., 1], out=masks[..., 3])
+    np.multiply(masks[..., 1::2], is_free[..., None], out=masks[..., ::2])
     return GateMasks(gate, row[gate], masks)
 
 
@@ -119,7 +132,7 @@ def _left_by_rivals(
         row: Their energy sets.
 
     Returns:
-        Shape (gates, subsets).
+        Shape (subsets, gates).
     """
     relation, member = gate % max(1, len(hostile)), sets.member[row]
     number = hostile.numbers(len(scene.links), scene.station_count)
@@ -129,10 +142,7 @@ def _left_by_rivals(
     counts &= ~at_sender | (rival < relation[:, None])
     kill = np.where(hostile.is_strong, 1.0, half_kill(hostile.delta[:, 0]))
     spared = np.where(counts, 1.0 - kill[rival], 1.0)
-    left = np.ones((len(gate), 1))
-    for place in range(member.shape[1]):
-        left = np.concatenate([left, left * spared[:, place, None]], axis=1)
-    return left
+    return subset_products(spared)
 
 
 class Silencing(NamedTuple):
@@ -184,10 +194,7 @@ def silenced_by(tables: Silencing, on: FloatArray) -> Silenced:
         tables: Energy sets.
         on: a, probability that a member is on while the station could send, (rows, members).
     """
-    weight = np.ones(tables.feasible.shape)
-    for member, odds in enumerate((on / (1.0 - on)).T):
-        half = 1 << member
-        np.multiply(weight[:half], odds, out=weight[half : 2 * half])
+    weight = subset_products(on / (1.0 - on))
     weight *= tables.feasible
     sums = column_sums(np.concatenate([weight * tables.blocks, weight], axis=1))
     blocked = sums[: len(on)] / sums[len(on) :]
