@@ -148,7 +148,7 @@ def _peer_lines() -> Iterator[Line]:
 
 def measured(line: Line) -> float | None:
     """Return what a line's script says, ``None`` if it failed."""
-    environment = os.environ | ({"NCSIM_PURE": "1"} if line.is_pure else {})
+    environment = os.environ | {"NCSIM_PURE": "1" if line.is_pure else "0"}
     command = [sys.executable, str(HERE / line.command[0]), *line.command[1:]]
     done = subprocess.run(command, check=False, capture_output=True, text=True, env=environment)
     found = re.search(line.pattern, done.stdout)

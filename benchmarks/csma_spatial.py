@@ -112,7 +112,7 @@ def run_s(scheduler: str, routing: str, form: str) -> float:
 
     Compiled, numba has been started and what it keeps has been read before.
     """
-    pure = "1" if form == "arrays" else ""
+    pure = "1" if form == "arrays" else "0"
     command = [sys.executable, "-c", RUN, scheduler, routing, form]
     environment = os.environ | {"NCSIM_PURE": pure}
     done = subprocess.run(command, env=environment, capture_output=True, check=True)

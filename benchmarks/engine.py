@@ -62,8 +62,6 @@ def median_s(assembly: Assembly) -> float:
 
 def one(form: str, size: int, tasks: int) -> None:
     """Print one line of the table."""
-    if form in COMPILED:
-        import numba  # noqa: F401 - loaded already means worth using
     interference = "none" if form in ("none", "loop") else "csma_bianchi"
     took_s = median_s(assemble(layered_scenario(size, tasks, interference)))
     target_s = TARGETS_s.get((form, size, tasks))
@@ -96,8 +94,6 @@ def paper_runs() -> None:
 
 def long_run(events: int, form: str = "none") -> None:
     """Print what a run of some length costs, its trace streamed to a file."""
-    if form in COMPILED:
-        import numba  # noqa: F401
     dag = layered_dag(round(events / EVENTS_PER_TASK), WIDTH)
     config = {"scheduler": "round_robin", "routing": "minimum_hop", "interference": "none"}
     assembly = assemble(make_scenario("long", wired_grid(5), [dag], config))
@@ -168,7 +164,7 @@ def trace() -> None:
 
 
 def _in_new_process(name: str, *arguments: object, is_pure: bool) -> None:
-    environment = os.environ | {"NCSIM_PURE": "1" if is_pure else ""}
+    environment = os.environ | {"NCSIM_PURE": "1" if is_pure else "0"}
     command = [sys.executable, __file__, name, *map(str, arguments)]
     subprocess.run(command, check=True, env=environment)
 

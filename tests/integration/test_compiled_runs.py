@@ -9,13 +9,12 @@ import sys
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ncsim_core.acceleration import may_compile
 from ncsim_core.api import prepare
 from ncsim_core.engine import looping
-from ncsim_core.engine.looping import may_compile
 from ncsim_core.engine.observer import Observer
 from ncsim_core.generators.dags import Form, dag_of
 from ncsim_core.generators.paper import paper_grid
-from ncsim_core.memory import limited_memory
 from ncsim_core.scenario.making import make_scenario
 from ncsim_core.trace.writer import TraceWriter
 from ncsim_core.units import HORIZON_us
@@ -77,47 +76,28 @@ class Live(Observer):
     """Looks at the run while it goes on."""
 
 
-@pytest.fixture
-def numba_is_unused(monkeypatch):
-    monkeypatch.setenv("NCSIM_PURE", "")
-    monkeypatch.setattr(looping, "_saved_so_far_us", 0)
-    monkeypatch.delitem(sys.modules, "numba", raising=False)
-
-
 def is_compiled(run):
     return looping.compiled_run_of(run.state, run.setup, HORIZON_us) is not None
 
 
 @needs_numba
-@pytest.mark.parametrize(
-    ("pure", "worth_us", "expected"), [("", 0, True), ("", 10**6, False), ("1", 0, False)]
-)
-def test_long_runs_are_compiled_unless_that_is_switched_off(
-    pure, worth_us, expected, monkeypatch, numba_is_unused
-):
+@pytest.mark.parametrize(("pure", "expected"), [("0", True), ("1", False)])
+def test_runs_are_compiled_at_once_or_never_if_somebody_says_so(pure, expected, monkeypatch):
     monkeypatch.setenv("NCSIM_PURE", pure)
-    monkeypatch.setattr(looping, "WORTH_COMPILING_us", worth_us)
 
     assert is_compiled(prepare(scenario_of(3, [(0, 1)], {}))) is expected
 
 
 @needs_numba
-def test_numba_is_not_started_where_memory_is_limited(monkeypatch, numba_is_unused):
-    monkeypatch.setattr(looping, "WORTH_COMPILING_us", 0)
+def test_runs_count_by_their_starts_and_finishes(monkeypatch):
+    monkeypatch.setenv("NCSIM_PURE", "")
     run = prepare(scenario_of(3, [(0, 1)], {}))
+    before_us = looping.PAYBACK.saved_us
 
-    with limited_memory(1000.0):
-        assert not is_compiled(run)
-    assert is_compiled(run)
+    looping.is_worth_compiling(run.setup)
 
-
-@needs_numba
-def test_many_short_runs_of_a_process_are_a_long_one(monkeypatch, numba_is_unused):
-    run = prepare(scenario_of(3, [(0, 1)], {}))
-    cost_us = 2 * len(run.setup.dependencies) * looping.SAVED_WITH_RADIO_us
-    monkeypatch.setattr(looping, "WORTH_COMPILING_us", 4 * cost_us)
-
-    assert [looping.is_worth_compiling(run.setup) for _ in range(4)] == [False, False, False, True]
+    added_us = 2 * len(run.setup.dependencies) * looping.SAVED_WITH_RADIO_us
+    assert looping.PAYBACK.saved_us == before_us + added_us
 
 
 @needs_numba
@@ -174,19 +154,18 @@ sys.stderr.write(f"numba={'numba' in sys.modules}")
 """
 
 
-def spatial_trace(first_line, **environment):
-    code = first_line + SPATIAL_TRACE
-    command = [sys.executable, "-c", code]
+def spatial_trace(**environment):
+    command = [sys.executable, "-c", SPATIAL_TRACE]
     done = subprocess.run(command, env=os.environ | environment, capture_output=True, check=True)
     return done.stdout, done.stderr.decode()
 
 
 @needs_numba
 def test_csma_spatial_leaves_the_same_trace_with_arrays_and_with_compiled_loops():
-    pure, said = spatial_trace("", NCSIM_PURE="1")
+    pure, said = spatial_trace(NCSIM_PURE="1")
     assert said == "numba=False"
 
-    compiled, said = spatial_trace("import numba", NCSIM_PURE="")
+    compiled, said = spatial_trace(NCSIM_PURE="0")
     assert said == "numba=True"
 
     assert pure == compiled

@@ -105,10 +105,10 @@ def test_pure_work_never_imports_numba():
 def test_numba_is_not_started_for_little_work():
     code = (
         "import sys\n"
-        "from ncsim_wifi.spatial.forms import ARRAYS, SAVED_us, WORTH_LOOPS_us, form_for\n"
-        "assert form_for(WORTH_LOOPS_us // SAVED_us, 1) is ARRAYS\n"
+        "from ncsim_wifi.spatial.forms import ARRAYS, SAVED_us, form_for\n"
+        "assert form_for(1_900_000 // SAVED_us, 1) is ARRAYS\n"
         "assert 'numba' not in sys.modules\n"
-        "assert form_for(1, 1) is not ARRAYS\n"
+        "assert form_for(31_000_000 // SAVED_us, 1) is not ARRAYS\n"
     )
 
     subprocess.run([sys.executable, "-c", code], check=True, env={})

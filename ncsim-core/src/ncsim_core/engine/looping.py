@@ -1,17 +1,15 @@
 """Whether a run goes through the compiled loop; its results are the same either way.
 
-The loop pays for itself only in long runs, since numba takes two seconds to start: it is used once
-the runs of a process come to ``WORTH_COMPILING_us``, or at once if numba is loaded.
+The loop pays for itself only in long runs, since numba takes two seconds to start.
 """
 
-import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ncsim_core.acceleration import may_compile, numba_starts
+from ncsim_core.acceleration import Payback
 from ncsim_core.engine.sessions.choice import loads_of
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State
-from ncsim_core.memory import is_memory_limited
 from ncsim_core.units import Instant
 
 if TYPE_CHECKING:
@@ -21,10 +19,7 @@ SAVED_us: Final = 8
 SAVED_WITH_RADIO_us: Final = 30
 """What the loop saves at a start or finish of a transfer, about."""
 
-WORTH_COMPILING_us: Final = 2_000_000
-"""What has to be saved; about what it takes to start numba and to load the loop."""
-
-_saved_so_far_us = 0
+PAYBACK: Final = Payback(Path(__file__).parent / "compiled", compile_us=7_000_000)
 
 
 def compiled_run_of(state: State, setup: Setup, last_us: Instant) -> "CompiledRun | None":
@@ -58,14 +53,6 @@ def is_possible(state: State, setup: Setup) -> bool:
 
 
 def is_worth_compiling(setup: Setup) -> bool:
-    """Return whether a run of this length, after those so far, should be compiled.
-
-    None is where memory is limited: what numba needs, some 370 MB, is not the run's.
-    """
-    global _saved_so_far_us  # noqa: PLW0603 - a matter of the process, and of speed only
-    if not may_compile() or is_memory_limited():
-        return False
+    """Return whether a run of this length, after those so far, should be compiled."""
     saved_us = SAVED_us if setup.models.interference.tables() is None else SAVED_WITH_RADIO_us
-    _saved_so_far_us += saved_us * 2 * len(setup.dependencies)
-    is_worth = "numba" in sys.modules or _saved_so_far_us >= WORTH_COMPILING_us
-    return is_worth and numba_starts()
+    return PAYBACK.is_reached(saved_us * 2 * len(setup.dependencies))
