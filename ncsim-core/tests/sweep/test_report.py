@@ -215,3 +215,9 @@ def test_parquet_holds_what_the_table_holds(tmp_path):
     back = parquet.read_table(tmp_path / "new" / "runs.parquet").to_pylist()
 
     assert back == INVERSION.to_dicts()
+
+
+def test_latex_heads_name_quantity_and_unit():
+    text = Table(("dags.payload_MB", "round_robin", "mean_makespan_s"), ((1, 2, 3.0),)).to_latex()
+
+    assert r"payload (MB) & round\_robin & mean makespan (s) \\" in text

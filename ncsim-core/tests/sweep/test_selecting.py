@@ -80,7 +80,7 @@ def test_two_runs_of_a_study_are_compared_task_by_task(study):
 
     assert code == 0
     assert "interference_model: none | csma_bianchi" in out
-    assert "more contention_loss" in out
+    assert "more contention loss" in out
     assert "regret: 0.0% |" in out
 
 

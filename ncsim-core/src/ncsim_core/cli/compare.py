@@ -110,7 +110,8 @@ def comparison_lines(comparison: "Comparison") -> "Iterator[str]":
     yield f"transfers that changed: {len(comparison.transfers)}"
     for transfer in comparison.transfers:
         routes = _either(_route(transfer.first_route), _route(transfer.second_route))
-        yield f"  {transfer.took_us / 1e6:+14.6f} s  {transfer.label} over {routes}: {transfer.why}"
+        why = transfer.why.replace("_", " ")
+        yield f"  {transfer.took_us / 1e6:+14.6f} s  {transfer.label} over {routes}: {why}"
     for line in comparison.unmatched:
         yield f"  {line}"
 

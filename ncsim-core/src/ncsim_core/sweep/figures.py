@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 
 from ncsim_core.metrics.statistics import MeanInterval, mean_interval, slowdown
 from ncsim_core.sweep.drawing import INVERTED, PLAIN, figure_at, style
-from ncsim_core.sweep.formatting import shown_value
+from ncsim_core.sweep.formatting import quantity, shown_value
 from ncsim_core.sweep.report import (
     SOLO,
     check_measure,
@@ -25,12 +25,6 @@ MAX_LEGEND: Final = 12
 LEGEND_COLUMNS: Final = 3
 WIDE: Final = 30.0
 """Ratio of the ends of an axis from which on it is logarithmic."""
-
-UNITS: Final = {
-    "s": "s", "us": "us", "m": "m", "MB": "MB", "hops": "hops", "MBps": "MB/s", "Mbps": "Mb/s",
-    "dB": "dB", "dBm": "dBm", "mW": "mW", "MHz": "MHz", "GHz": "GHz",
-}  # fmt: skip
-"""Units as columns end in them, and as an axis names them."""
 
 Point = tuple[Any, MeanInterval]
 
@@ -203,18 +197,6 @@ def _name_colours(figure: Any) -> None:  # noqa: ANN401 - matplotlib is untyped
 
 def _label(record: Mapping[str, Any], heads: Sequence[str]) -> str:
     return " / ".join(shown_value(record[each]) for each in heads) or "all"
-
-
-def quantity(column: str) -> str:
-    """Return a column as an axis names it.
-
-    >>> quantity("makespan_s"), quantity("dags.payload_MB"), quantity("scheduler")
-    ('makespan (s)', 'payload (MB)', 'scheduler')
-    """
-    words = _last_word(column).split("_")
-    units = [each for each in words if each in UNITS]
-    name = " ".join(each for each in words if each not in UNITS)
-    return f"{name} ({' '.join(UNITS[each] for each in units)})" if units and name else name
 
 
 def _last_word(column: str) -> str:

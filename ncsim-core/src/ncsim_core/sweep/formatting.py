@@ -103,3 +103,24 @@ def _component(value: Mapping[str, Any]) -> str:
     more = {k: v for k, v in value.items() if k not in ("type", "options")}
     given = ", ".join(filter(None, [given, *(f"{k}={shown_value(v)}" for k, v in more.items())]))
     return f"{value['type']}({given})" if given else str(value["type"])
+
+
+UNITS: Final = {
+    "s": "s", "us": "us", "m": "m", "MB": "MB", "hops": "hops", "MBps": "MB/s", "Mbps": "Mb/s",
+    "dB": "dB", "dBm": "dBm", "mW": "mW", "mhz": "MHz", "ghz": "GHz", "MHz": "MHz", "GHz": "GHz",
+}  # fmt: skip
+"""Units as columns end in them, and as people read them."""
+
+
+def quantity(column: str) -> str:
+    """Return a column as an axis or a printed table names it; without a unit it stays a name.
+
+    >>> quantity("mean_makespan_s"), quantity("dags.payload_MB"), quantity("round_robin")
+    ('mean makespan (s)', 'payload (MB)', 'round_robin')
+    """
+    name = column.rpartition(".")[2]
+    words = name.split("_")
+    units: list[str] = []
+    while words[1:] and words[-1] in UNITS:
+        units.insert(0, UNITS[words.pop()])
+    return f"{' '.join(words)} ({' '.join(units)})" if units else name

@@ -14,6 +14,7 @@ from ncsim_core.sweep.formatting import (
     escaped_for_latex,
     escaped_for_markdown,
     is_numeric,
+    quantity,
 )
 from ncsim_core.sweep.plan import SweepPlan, canonical
 from ncsim_core.sweep.store import Store
@@ -88,7 +89,7 @@ class Table:
         marks = "".join("r" if is_right else "l" for is_right in self.numeric)
         lines = [
             " & ".join(map(escaped_for_latex, row)) + r" \\"
-            for row in (self.columns, *cells(self.rows, self.heads, digits))
+            for row in (map(quantity, self.columns), *cells(self.rows, self.heads, digits))
         ]
         return "\n".join(
             [
