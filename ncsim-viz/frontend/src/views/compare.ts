@@ -91,15 +91,16 @@ function head(p: Painter, ctx: Context, box: Box): void {
   const { colours, extras } = ctx;
   const found = extras.comparison;
   const names = namesOf(ctx);
+  const isNarrow = box.width < 640;
   (["first", "second"] as const).forEach((side, i) => {
     const makespan = runOf(ctx, side).done?.makespan;
     const y = 18 + i * 22;
     swatch(p, ctx, 16, y - 6, 22, 12, side);
     const words = `${names[i]}: ${runOf(ctx, side).status.replaceAll("_", " ")}, makespan ${makespan == null ? "–" : `${seconds(makespan)} s`}`;
-    p.text(46, y, fitted(words, box.width - 240, 13), { fill: colours.ink, size: 13, bold: true });
+    p.text(46, y, fitted(words, 0.92 * (box.width - (isNarrow ? 130 : 240)), 13), { fill: colours.ink, size: 13, bold: true });
   });
-  if (found?.makespan_ratio != null) p.text(box.width - 16, 18, `second / first: × ${number(found.makespan_ratio, 5)}`, { fill: colours.ink, size: 14, bold: true, anchor: "end" });
-  p.text(box.width - 16, 40, "at the right: how much later it ended", { fill: colours.muted, size: 11, anchor: "end" });
+  if (found?.makespan_ratio != null) p.text(box.width - 16, 18, `${isNarrow ? "" : "second / first: "}× ${number(found.makespan_ratio, isNarrow ? 3 : 5)}`, { fill: colours.ink, size: 14, bold: true, anchor: "end" });
+  p.text(box.width - 16, 40, isNarrow ? "later by" : "at the right: how much later it ended", { fill: colours.muted, size: 11, anchor: "end" });
   const differences = found?.differences ?? [];
   p.text(16, HEAD - 8, differences.length ? "What differs in the configuration:" : "The configurations are equal.", { fill: colours.muted, size: 11 });
   differences.slice(0, SETTINGS).forEach((each, i) => {
