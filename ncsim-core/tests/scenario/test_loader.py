@@ -136,3 +136,21 @@ def test_loading_leaves_the_garbage_collector_as_it_was(core: Registry, full):
         with pytest.raises(ScenarioFaults):
             parse_scenario("scenario: {}", registry=core)
         assert gc.isenabled() is is_enabled
+
+
+def test_nodes_without_any_link_are_noted_where_data_would_have_to_travel():
+    text = """
+scenario:
+  network: {nodes: [{id: a, compute_capacity: 1}, {id: b, compute_capacity: 1}]}
+  dags:
+    - id: d
+      tasks: [{id: T0, compute_cost: 1}, {id: T1, compute_cost: 1}]
+      edges: [{from: T0, to: T1, data_size: 4}]
+  config: {scheduler: all_on_fastest}
+"""
+    lonely = text.replace(", {id: b, compute_capacity: 1}", "")
+    linked = text.replace("}]}", "}], links: [{id: ab, from: a, to: b, bandwidth: 1}]}")
+
+    (note,) = parse_scenario(text).notes
+    assert note.startswith("there are no links; ncsim new OUT --link FILE")
+    assert parse_scenario(lonely).notes == parse_scenario(linked).notes == ()

@@ -128,7 +128,17 @@ def _loaded(document: Data, slips: list[Slip], source: Source, loading: _Loading
         raise located(problems, slips, source, origins)
     rows = document["scenario"]
     unused = unused_sections(rows.get("config", {}), config, loading.registry)
-    return _built(rows, config, loading.name, (*translation.notes, *unused))
+    notes = (*translation.notes, *unused, *_missing_links(rows))
+    return _built(rows, config, loading.name, notes)
+
+
+def _missing_links(rows: Mapping[str, Any]) -> list[str]:
+    """Return a note if data of a DAG could have to travel and there is no link at all."""
+    network = rows["network"]
+    has_edges = any(dag.get("edges") for dag in rows["dags"])
+    if len(network["nodes"]) < 2 or network.get("links") or not has_edges:  # noqa: PLR2004
+        return []
+    return ["there are no links; ncsim new OUT --link FILE --range M makes them from positions"]
 
 
 def _shape_problems(document: Data, registry: Registry) -> list[Problem]:
