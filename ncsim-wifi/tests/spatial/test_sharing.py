@@ -5,15 +5,12 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ncsim_wifi.spatial.sharing import Sharing, share_of_the_greedy
+from ncsim_wifi.spatial.sharing import Sharing, greedy_shares
 
 
 def shares_of(capacity, demands, costs):
     """Return what each gets: no more than it asks, nor than it could get if it asked for all."""
-    order = sorted(range(len(demands)), key=demands.__getitem__)
-    could = [
-        share_of_the_greedy(one, order, demands, costs, capacity) for one in range(len(demands))
-    ]
+    could = greedy_shares(demands, costs, capacity)
     return [min(pair) for pair in zip(demands, could, strict=True)]
 
 

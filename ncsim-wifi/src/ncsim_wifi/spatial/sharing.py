@@ -10,36 +10,38 @@ from collections.abc import Mapping, Sequence
 ROUNDS = 6
 
 
-def share_of_the_greedy(
-    greedy: int,
-    order: Sequence[int],
-    demands: Sequence[float],
-    costs: Sequence[float],
-    capacity: float = 1.0,
-) -> float:
-    """Return the share of one that takes all it can get of a capacity.
+def greedy_shares(
+    demands: Sequence[float], costs: Sequence[float], capacity: float = 1.0
+) -> list[float]:
+    """Return for each what it would get of a capacity if it took all it can get.
 
-    Others get equal shares, less if they demand less.
+    The others get equal shares, less if they demand less.
 
     Args:
-        greedy: Which one.
-        order: All, by demand.
-        demands: The most that each of the others takes.
+        demands: The most that each takes as one of the others.
         costs: What one unit costs each.
         capacity: What there is.
 
-    >>> share_of_the_greedy(1, [0, 2, 1], [0.2, 0.0, 0.9], [1.0, 1.0, 1.0])
-    0.4
+    >>> greedy_shares([0.2, 0.0, 0.9], [1.0, 1.0, 1.0])
+    [0.5, 0.4, 0.8]
     """
+    order = sorted(range(len(demands)), key=demands.__getitem__)
     cost = sum(costs)
-    for place in order:
-        demand = demands[place]
-        if place == greedy or (demand == math.inf and place > greedy):
-            continue
+    shares = [0.0] * len(demands)
+    for at, greedy in enumerate(order):  # those before it have been served
+        left, left_cost = capacity, cost
+        for place in order[at + 1 :]:
+            demand = demands[place]
+            if demand == math.inf and place > greedy:
+                continue
+            level = max(0.0, left) / left_cost if left_cost > 0.0 else 0.0
+            left -= min(demand, level) * costs[place]
+            left_cost -= costs[place]
+        shares[greedy] = max(0.0, left) / left_cost if left_cost > 0.0 else 0.0
         level = max(0.0, capacity) / cost if cost > 0.0 else 0.0
-        capacity -= min(demand, level) * costs[place]
-        cost -= costs[place]
-    return max(0.0, capacity) / cost if cost > 0.0 else 0.0
+        capacity -= min(demands[greedy], level) * costs[greedy]
+        cost -= costs[greedy]
+    return shares
 
 
 class Sharing:
@@ -108,13 +110,10 @@ class Sharing:
             return
         usable = [link for link in links if able[link]]
         asked = [sum(demands[link]) for link in usable]
-        costs = [1.0 / able[link] for link in usable]
-        order = sorted(range(len(usable)), key=asked.__getitem__)
-        share = dict.fromkeys(links, 0.0)
-        for place, link in enumerate(usable):
-            share[link] = share_of_the_greedy(place, order, asked, costs)
+        shares = greedy_shares(asked, [1.0 / able[link] for link in usable])
+        share = dict(zip(usable, shares, strict=True))
         for link in links:
-            self._offer(link, share[link], demands[link], offers)
+            self._offer(link, share.get(link, 0.0), demands[link], offers)
 
     def _offer(
         self,
@@ -129,9 +128,8 @@ class Sharing:
             offers[numbers[0]][link] = share
             return
         ones = [1.0] * len(numbers)
-        order = sorted(range(len(numbers)), key=demands.__getitem__)
-        for place, number in enumerate(numbers):
-            offers[number][link] = share_of_the_greedy(place, order, demands, ones, share)
+        for number, offer in zip(numbers, greedy_shares(demands, ones, share), strict=True):
+            offers[number][link] = offer
 
 
 def _two_least(offers: Mapping[int, float]) -> tuple[float, int, float]:

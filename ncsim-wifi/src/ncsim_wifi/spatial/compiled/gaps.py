@@ -19,9 +19,10 @@ MOMENTS = 4
 
 
 class Relation(NamedTuple):
-    """One relation; as in ``Interferers`` and ``Windows``."""
+    """One relation; as in ``Interferers`` and ``Windows``, and how many slots windows hold."""
 
     left_us: FloatArray
+    counts: FloatArray
     borne_us: FloatArray
     after_us: float
     on_air_us: float
@@ -39,13 +40,14 @@ def survival(met: Interferers, windows: Windows) -> Survival:
     survives, missed, found_free = np.empty((3, count, STAGES))
     moments = np.empty((int(windows.longest_us / SLOT_us) + 2, MOMENTS))
     mean_count = np.empty(STAGES)
+    counts = np.empty(len(windows.left_us))
     for at in range(count):
-        relation = _relation(met, windows, at)
+        relation = _relation(met, windows, at, counts)
         _mean_counts(met.share[at], met.others[at], mean_count)
         count_us = _count_us(met, at, mean_count)
         interrupted = (count_us - SLOT_us) / (met.neighbour_us[at] - SLOT_us)
         interrupted = min(max(interrupted, 0.0), 1.0)
-        last = int(max(0.0, relation.left_us.max() - relation.after_us) / SLOT_us)
+        last = int(max(0.0, counts.max()))
         _fill_moments((1.0 - interrupted) * met.others[at], moments[: last + 1])
         for stage in range(STAGES):
             law = _ending(met.share[at, stage], met.others[at], stage)
@@ -56,10 +58,14 @@ def survival(met: Interferers, windows: Windows) -> Survival:
 
 
 @inlined
-def _relation(met: Interferers, windows: Windows, at: int) -> Relation:
+def _relation(met: Interferers, windows: Windows, at: int, counts: FloatArray) -> Relation:
+    """Return one relation; fill how many slots each window holds."""
     after_us = met.after_us[at]
+    for number in range(len(counts)):
+        counts[number] = math.floor((windows.left_us[number, at] - after_us) / SLOT_us)
     return Relation(
         windows.left_us[:, at],
+        counts,
         windows.borne_us[:, at],
         after_us,
         met.on_air_us[at],
@@ -136,7 +142,8 @@ def _outcome(
     missed = room_us = 0.0
     for number in range(len(relation.left_us)):
         left_us = relation.left_us[number]
-        ends, spare_us = _short(left_us - relation.after_us, law, longest, moments)
+        last = min(relation.counts[number], longest)
+        ends, spare_us = _short(left_us - relation.after_us, law, last, moments)
         room_us = max(0.0, mean_us - left_us + spare_us)
         if number == 0:
             missed = room_us / cycle_us
@@ -165,10 +172,9 @@ def _ending(share: float, others: float, stage: int) -> tuple[float, float, floa
 
 @inlined
 def _short(
-    room_us: float, law: tuple[float, float, float], longest: float, moments: FloatArray
+    room_us: float, law: tuple[float, float, float], last: float, moments: FloatArray
 ) -> tuple[float, float]:
     """Return P(gap < v) and E(v - gap)^+ of uninterrupted gaps."""
-    last = min(math.floor(room_us / SLOT_us), longest)
     if last < 0.0:
         return 0.0, 0.0
     n = int(last)

@@ -28,32 +28,41 @@ def helped_kill(
     """
     on_air_us, busy_us = times.on_air_us, times.busy_us
     count, most = helpers.helper.shape
-    result = np.empty((count, STAGES))
-    killed, total = np.empty(1 << most), np.empty(1 << most)
+    result, met = np.empty((count, STAGES)), np.empty(STAGES)
+    killed, total = np.empty((1 << most, STAGES)), np.empty((1 << most, STAGES))
     for at in range(count):
         own, station = helpers.helped[at].own, helpers.helped[at].station
         part = min(max(on[own, station], LEAST_ON), LARGEST_ON)
         protected_us = helpers.helped[at].protected_us
         window_us = _overlap_us(on_air_us[station], busy_us[station] / part, protected_us, scale)
-        for stage in range(STAGES):
-            for held in range(1 << most):
-                total[held] = helpers.omega[at, held]
-                killed[held] = helpers.omega[at, held] * helpers.kill[at, held]
-            for place in range(most - 1, -1, -1):
-                helper, half = helpers.helper[at, place], 1 << place
-                if helper < 0:
-                    continue  # nobody is never there
-                part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
-                part = part * (on_air_us[helper] / busy_us[helper])
-                relation = helpers.helper_relation[at, place]
-                if relation >= 0:
-                    part = part * eager[relation, stage]
-                met = _met(min(part, LARGEST_ON), on_air_us[helper], window_us)
-                for held in range(half):
-                    killed[held] = killed[held] * (1.0 - met) + killed[half + held] * met
-                    total[held] = total[held] * (1.0 - met) + total[half + held] * met
-            result[at, stage] = min(killed[0] / max(total[0], 1e-300), LARGEST_KILL)
+        used = 0  # those that are not there are the last
+        while used < most and helpers.helper[at, used] >= 0:
+            used += 1
+        for held in range(1 << used):
+            for k in range(STAGES):
+                total[held, k] = helpers.omega[at, held]
+                killed[held, k] = helpers.omega[at, held] * helpers.kill[at, held]
+        for place in range(used - 1, -1, -1):
+            helper, relation = helpers.helper[at, place], helpers.helper_relation[at, place]
+            part = min(max(on[own, helper], LEAST_ON), LARGEST_ON)
+            part = part * (on_air_us[helper] / busy_us[helper])
+            for k in range(STAGES):
+                now = part * eager[relation, k] if relation >= 0 else part
+                met[k] = _met(min(now, LARGEST_ON), on_air_us[helper], window_us)
+            _fold(killed, met, 1 << place)
+            _fold(total, met, 1 << place)
+        for k in range(STAGES):
+            result[at, k] = min(killed[0, k] / max(total[0, k], 1e-300), LARGEST_KILL)
     return result
+
+
+@inlined
+def _fold(values: FloatArray, met: FloatArray, half: int) -> None:
+    """Average sets of helpers without and with one of them, by stage."""
+    for held in range(half):
+        for k in range(STAGES):
+            there = values[half + held, k] * met[k]
+            values[held, k] = values[held, k] * (1.0 - met[k]) + there
 
 
 @inlined
