@@ -151,3 +151,10 @@ def test_points_at_names_are_joined_only_where_several_lines_cross(drawn, tmp_pa
     styles = [{line[0].get_linestyle() for line in lines_of(f.axes[0]).values()} for f in drawn]
     assert "None" not in styles[0] | styles[1]
     assert styles[2] == {"None"}
+
+
+def test_lines_without_a_legend_are_counted(drawn, tmp_path):
+    many = study([(k, mode, 1, 1.0) for k in range(20) for mode in ("a", "b")], "case", "mode")
+    draw_means(many, "mode", "makespan_s", tmp_path / "many.svg")
+
+    assert "20 lines, one per case: too many to name" in drawn[0].axes[0].get_title()

@@ -154,6 +154,11 @@ def _draw_lines(
         if len(numbers) == len(places):
             _scale(axes, sorted(numbers))
         axes.set(**labels)
+        if len(lines) > MAX_LEGEND:
+            named = " / ".join(map(_last_word, others))
+            axes.set_title(
+                f"{labels['title']}\n{len(lines)} lines, one per {named}: too many to name"
+            )
         if has_legend:
             names = ", ".join(map(_last_word, others))
             figure.legend(loc="outside lower center", ncols=LEGEND_COLUMNS, title=names)
