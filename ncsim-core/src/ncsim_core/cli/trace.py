@@ -50,7 +50,8 @@ def check(
 ) -> None:
     """Verify traces: bytes are conserved, nodes do one thing at a time, causes exist, and more.
 
-    Leaves with exit code 1 if anything is wrong.
+    Leaves with exit code 1 if anything is wrong. It looks at the trace alone: whether the scenario
+    beside it gives that trace, ncsim reproduce tells.
     """
     from ncsim_core.trace.check import trace_report
 
