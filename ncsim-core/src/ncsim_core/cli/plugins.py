@@ -1,15 +1,14 @@
 """``ncsim plugins``: what is installed, is it right, and a start for a new one."""
 
 import json
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ncsim_core.cli.exit_codes import ExitCode
-from ncsim_core.errors import PluginError, ScenarioError
+from ncsim_core.errors import ScenarioError
 from ncsim_core.plugins import KINDS
 
 if TYPE_CHECKING:
@@ -22,7 +21,6 @@ app = typer.Typer(
     help="Look at installed plug-ins, check them, and start a new one.",
 )
 
-NAMED = 3  # checks that fail for one reason are named up to here; --json has them all
 SECTION = "section"  # of config; shown as a component is
 SHOWN = ("qualified_name", "version", "summary", "source", "factory", "capabilities")
 
@@ -88,20 +86,27 @@ def check(
 
     Example: ncsim plugins check ncsim-routing
     """
+    from ncsim_core.cli.plugin_checks import (
+        checked,
+        counts,
+        records_to_check,
+        result_as_data,
+        result_lines,
+    )
     from ncsim_core.registry import get_registry
 
     registry = get_registry()
-    records = _records_to_check(registry, distribution)
+    records = records_to_check(registry, distribution)
     results: list[CheckResult] = []
     for record in records:
-        for label, some in _checked(registry, record):
+        for label, some in checked(registry, record):
             results += some
             if not as_json:
-                typer.echo("\n".join(_result_lines(label, some)))
+                typer.echo("\n".join(result_lines(label, some)))
     if as_json:
-        typer.echo(json.dumps([_result_as_data(each) for each in results], indent=2))
+        typer.echo(json.dumps([result_as_data(each) for each in results], indent=2))
     else:
-        typer.echo(f"in all: {_counts(results)}")
+        typer.echo(f"in all: {counts(results)}")
     if any(each.is_bad for each in results):
         raise typer.Exit(ExitCode.INVALID_INPUT)
 
@@ -221,95 +226,3 @@ def _plugin_lines(plugin: dict[str, object]) -> Iterator[str]:
     sections = plugin["sections"]
     for each in sections if isinstance(sections, list) else ():
         yield f"  {'config section':<18} {each['name']:<24} {each['summary']}"
-
-
-def _records_to_check(registry: "Registry", distribution: str | None) -> list["PluginRecord"]:
-    from ncsim_core.registry.records import normalised
-
-    if distribution is None:
-        return [each for each in registry.plugins if each.status != "disabled"]
-    wanted = normalised(distribution)
-    found = [each for each in registry.plugins if each.distribution == wanted]
-    if not found:
-        raise PluginError(
-            _not_a_plugin(distribution, [each.distribution for each in registry.plugins])
-        )
-    return found
-
-
-def _not_a_plugin(distribution: str, plugins: Sequence[str]) -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    from ncsim_core.plugins import PLUGIN_GROUP
-    from ncsim_core.registry.messages import close_match
-
-    try:
-        there = f"{distribution} {version(distribution)} is installed"
-    except PackageNotFoundError:
-        meant = close_match(distribution, plugins)
-        hint = f"did you mean {meant!r}? " if meant else ""
-        return f"no plug-in package {distribution!r}; {hint}installed: {', '.join(plugins)}"
-    return (
-        f"{there}, but offers no entry point in the group {PLUGIN_GROUP!r}; add one to its "
-        "pyproject.toml and install it again"
-    )
-
-
-def _checked(
-    registry: "Registry", record: "PluginRecord"
-) -> Iterator[tuple[str, list["CheckResult"]]]:
-    """Yield a label and the results of a plug-in as a whole, then of each component.
-
-    Raises:
-        PluginError: The extra that brings the checks is not installed.
-    """
-    try:
-        from ncsim_core.testing import CheckResult, check_component
-        from ncsim_core.testing.suites.plugin import components_of, plugin_results
-    except ModuleNotFoundError as error:
-        raise PluginError(f"checks need {error.name}: pip install 'ncsim-core[testing]'") from error
-    yield f"{record.distribution} {record.version}", plugin_results(record.distribution, registry)
-    if record.status != "ok":
-        return
-    for each in components_of(registry, record.distribution):
-        label = f"{each.component.kind} {each.qualified_name}"
-        if each.is_available:
-            yield (
-                label,
-                check_component(each.component.kind, each.qualified_name, registry=registry),
-            )
-        else:
-            needs = f"needs {', '.join(each.missing_requirements)}"
-            yield label, [CheckResult(each.qualified_name, "is_available", "skipped", needs)]
-
-
-def _result_lines(label: str, results: Sequence["CheckResult"]) -> Iterator[str]:
-    yield f"{label}: {_counts(results)}"
-    alike: dict[tuple[str, str], list[str]] = {}
-    for each in results:
-        if each.status != "passed":
-            alike.setdefault((each.status, each.detail), []).append(each.check)
-    for (status, detail), checks in alike.items():
-        indented = detail.replace("\n", "\n      ")
-        more = f" and {len(checks) - NAMED} more" if len(checks) > NAMED else ""
-        yield f"    {status.replace('_', ' ')}: {', '.join(checks[:NAMED])}{more}: {indented}"
-
-
-def _counts(results: Sequence["CheckResult"]) -> str:
-    """Return for example ``12 run, 1 skipped, 0 expected failures, 0 failed``."""
-    by_status = Counter(each.status for each in results)
-    bad = sum(each.is_bad for each in results)
-    return (
-        f"{len(results) - by_status['skipped']} run, {by_status['skipped']} skipped, "
-        f"{by_status['expected_failure']} expected failures, {bad} failed"
-    )
-
-
-def _result_as_data(result: "CheckResult") -> dict[str, object]:
-    return {
-        "component": result.component,
-        "check": result.check,
-        "status": result.status,
-        "detail": result.detail,
-        "duration_s": round(result.duration_s, 6),
-    }
