@@ -9,6 +9,7 @@ from functools import partial
 from statistics import median
 
 import numpy as np
+from ncsim_core.acceleration import may_compile
 from ncsim_core.contracts.routing_model import RouteTable
 from ncsim_core.generators.paper import paper_grid
 from ncsim_core.network import Route
@@ -60,7 +61,7 @@ def cpu_ms(solve: Callable[[], object]) -> list[float]:
 def main() -> None:
     """Print median and least CPU time of active sets, of transfers and of whole runs."""
     both = {"arrays": forms.ARRAYS}
-    if forms.may_compile():
+    if may_compile():
         both["compiled"] = forms.compiled_loops()
     for count, side_m in ((1, 100.0), (10, 200.0), (30, 400.0), (100, 700.0)):
         scene = scene_of(random_plant(count, side_m), range(count))
@@ -69,7 +70,7 @@ def main() -> None:
             print(f"{count:4d} active links in {side_m:.0f} m, {name}: {told(solve)}")
     for count in (4, 16):
         routes = grid_routes(count)
-        name = "compiled" if forms.may_compile() else "arrays"
+        name = "compiled" if may_compile() else "arrays"
         took = told(lambda routes=routes: fresh_model().route_rates(routes))
         print(f"{count:4d} transfers of 1 to 4 hops on a 5x5 grid, {name}: {took}")
     for scheduler in ("heft", "cpop", "round_robin"):
