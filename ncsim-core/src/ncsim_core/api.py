@@ -120,9 +120,12 @@ class RunResult:
 
         Raises:
             ImportError: pandas is not installed.
+            ValueError: There is no such table.
         """
         import pandas as pd
 
+        if table not in ("tasks", "transfers", "links"):
+            raise ValueError(f"no table {table!r}; there are tasks, transfers and links")
         return pd.DataFrame(getattr(self, table))
 
 
