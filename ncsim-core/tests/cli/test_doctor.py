@@ -36,6 +36,16 @@ def test_versions_of_packages_and_plugins_are_told(capsys):
     assert all(each["state"] != "trouble" for each in found.values())
 
 
+def test_a_plugin_that_is_written_for_another_release_is_trouble(capsys, monkeypatch):
+    needs = {"ncsim-core": ["ncsim-core>=5,<6", "ncsim-viz>=1; extra == 'x'"]}
+    monkeypatch.setattr(diagnosis, "requires", lambda name: needs.get(name, []))
+
+    code, found = findings(capsys)
+
+    assert code == 1
+    assert "needs ncsim-core<6,>=5 (have " in found["plug-in ncsim-core"]["text"]
+
+
 def test_what_several_packages_need_is_told_once_and_must_suit_them_all(capsys, monkeypatch):
     needs = {"ncsim-core": ["numpy>=1"], "ncsim-wifi": ["numpy<1"]}
     monkeypatch.setattr(diagnosis, "requires", lambda name: needs.get(name, []))

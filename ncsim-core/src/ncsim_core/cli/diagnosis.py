@@ -90,11 +90,24 @@ def _yaml_reader() -> Finding:
 def _plugins(registry: "Registry") -> Iterator[Finding]:
     for record in registry.plugins:
         what = f"plug-in {record.distribution}"
-        if record.status == "ok":
+        unmet = ", ".join(_unmet(record.distribution))
+        if unmet:
+            yield Finding(what, "trouble", f"{record.version} needs {unmet}")
+        elif record.status == "ok":
             yield Finding(what, "ok", f"{record.version}, {_count(registry, record.distribution)}")
         else:
             state: State = "trouble" if record.is_broken else "warning"
             yield Finding(what, state, f"{record.version} is {record.status}: {record.detail}")
+
+
+def _unmet(distribution: str) -> Iterator[str]:
+    """Yield which other packages of ncsim a plug-in asks for in vain."""
+    from ncsim_core.registry.records import requirement_fault
+
+    for text in requires(distribution) or ():
+        fault = requirement_fault(text) if text.startswith("ncsim-") and ";" not in text else None
+        if fault is not None:
+            yield fault
 
 
 def _count(registry: "Registry", distribution: str) -> str:
