@@ -90,9 +90,9 @@ def independent_sets(senses: BoolArray, limit: int) -> list[int] | None:
     Returns:
         Bit u of each is set if it holds station u.
     """
-    neighbours = [sum(1 << int(w) for w in np.flatnonzero(row)) for row in senses]
+    rows = np.packbits(senses, 1, "little")
     sets = [0]
-    for station, heard in enumerate(neighbours):
+    for station, heard in enumerate(int.from_bytes(row, "little") for row in rows):
         sets += [held | 1 << station for held in sets if not held & heard]
         if len(sets) > limit:
             return None

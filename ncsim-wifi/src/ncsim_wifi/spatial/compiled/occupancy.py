@@ -3,14 +3,14 @@
 Source: MODEL 3.3; see ``ncsim_wifi.spatial.occupancy`` and ``ncsim_wifi.spatial.belief``.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
 from ncsim_core.compiling import inlined
 
-from ncsim_wifi.quantities import FloatArray, IntArray
+from ncsim_wifi.quantities import BoolArray, FloatArray, IntArray
 from ncsim_wifi.spatial.belief import ACCURACY, DAMPING, MAX_SWEEPS
 from ncsim_wifi.spatial.occupancy import FINE, ROUGH, Occupancy, OccupancyModel
 
@@ -59,10 +59,11 @@ class Graph(NamedTuple):
     beliefs: Beliefs
 
 
-def listed(lists: list[list[int]]) -> Lists:
-    """Return lists one behind the other."""
-    starts = np.array([0, *accumulate(map(len, lists))])
-    return Lists(starts, np.array([item for each in lists for item in each], np.int64))
+def listed(chosen: Sequence[BoolArray], names: Sequence[IntArray]) -> Lists:
+    """Return which columns are chosen in each row of some tables, by the names of columns."""
+    sizes = [0, *(size for table in chosen for size in table.sum(axis=1).tolist())]
+    items = [name[table.nonzero()[1]] for table, name in zip(chosen, names, strict=True)]
+    return Lists(np.cumsum(sizes), np.concatenate([*items, np.zeros(0, np.int64)]))
 
 
 @lru_cache(maxsize=256)
@@ -75,47 +76,65 @@ def graph_of(model: OccupancyModel) -> Graph:
 
 
 def _sets_of(model: OccupancyModel) -> SetLists:
-    components, sets = 0, 0
+    exact = [(stations, sets) for stations, sets in model.parts if sets is not None]
     component: list[int] = []
     parent: list[int] = []
     added: list[int] = []
-    idle: list[list[int]] = []
-    members: list[list[int]] = []
-    for stations, table in model.tables:
-        component += (table.component + components).tolist()
-        parent += (table.parent + sets).tolist()
-        added += stations[table.added].tolist()
-        idle += [stations[row > 0.0].tolist() for row in table.leaves_idle]
-        members += [stations[row > 0.0].tolist() for row in table.members]
-        components, sets = max(component) + 1, len(component)
+    holds: list[BoolArray] = []
+    leaves_idle: list[BoolArray] = []
+    for number, (stations, sets) in enumerate(exact):
+        in_order = sorted(sets, key=lambda held: (held.bit_count(), held))
+        place = {held: at for at, held in enumerate(in_order, len(parent))}
+        last = [held.bit_length() - 1 for held in in_order]
+        component += [number] * len(in_order)
+        parent += [
+            place[held ^ 1 << most] if held else place[held]
+            for held, most in zip(in_order, last, strict=True)
+        ]
+        added += stations[last].tolist()
+        holds.append(bits_of(in_order, len(stations)))
+        closed = model.senses[stations[:, None], stations] | np.eye(len(stations), dtype=np.bool_)
+        leaves_idle.append(holds[-1].astype(np.float64) @ closed == 0.0)
+    names = [stations for stations, _ in exact]
     return SetLists(
-        components,
+        len(exact),
         np.array(component, np.int64),
         np.array(parent, np.int64),
         np.array(added, np.int64),
-        listed(idle),
-        listed(members),
+        listed(leaves_idle, names),
+        listed(holds, names),
     )
+
+
+def bits_of(numbers: Sequence[int], count: int) -> BoolArray:
+    """Return the lowest bits of some numbers, shape (numbers, count).
+
+    >>> bits_of([1, 6], 3).tolist()
+    [[True, False, False], [False, True, True]]
+    """
+    size = (count + 7) // 8
+    held = np.frombuffer(b"".join(each.to_bytes(size, "little") for each in numbers), np.uint8)
+    bits = np.unpackbits(held.reshape(-1, size), axis=1, count=count, bitorder="little")
+    return bits.astype(np.bool_)
 
 
 def _beliefs_of(model: OccupancyModel) -> Beliefs:
     starts, cliques = [0], 0
     clique: list[int] = []
     station: list[int] = []
-    entries: list[list[int]] = [[] for _ in model.senses]
     for stations, belief in model.beliefs:
         clique += (belief.clique + cliques).tolist()
         station += stations[belief.station].tolist()
         cliques += belief.clique_count
         starts.append(len(clique))
-    for entry, each in enumerate(station):
-        entries[each].append(entry)
+    stations_of = np.array(station, np.int64)
+    is_of = np.arange(len(model.senses))[:, None] == stations_of
     return Beliefs(
         np.array(starts),
         cliques,
         np.array(clique, np.int64),
-        np.array(station, np.int64),
-        listed(entries),
+        stations_of,
+        listed([is_of], [np.arange(len(station))]),
     )
 
 
