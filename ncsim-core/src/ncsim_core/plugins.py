@@ -41,12 +41,14 @@ class Kind:
         config_key: Key under ``config`` in a scenario, such as ``routing``.
         contract: Import string of the abstract base class.
         question: What components of this kind answer.
+        capabilities: What they may claim, without the ``=value`` of some.
     """
 
     name: str
     config_key: str
     contract: str
     question: str
+    capabilities: frozenset[str] = frozenset()
 
 
 KINDS: Final[Mapping[str, Kind]] = {
@@ -57,30 +59,35 @@ KINDS: Final[Mapping[str, Kind]] = {
             "scheduler",
             "ncsim_core.contracts.scheduler:Scheduler",
             "where does each task run?",
+            frozenset({"scale_invariant", "max_tasks"}),
         ),
         Kind(
             "routing_model",
             "routing",
             "ncsim_core.contracts.routing_model:RoutingModel",
             "which links does a transfer occupy?",
+            frozenset({"objective", "single_hop", "pure"}),
         ),
         Kind(
             "link_model",
             "link_model",
             "ncsim_core.contracts.link_model:LinkModel",
             "what does a link offer alone?",
+            frozenset({"radio"}),
         ),
         Kind(
             "interference_model",
             "interference",
             "ncsim_core.contracts.interference_model:InterferenceModel",
             "how much does concurrent traffic slow a link?",
+            frozenset({"needs_radio", "decides_routes", "monotone"}),
         ),
         Kind(
             "queue_model",
             "queue",
             "ncsim_core.contracts.queue_model:QueueModel",
             "which waiting task is next?",
+            frozenset({"order"}),
         ),
         Kind(
             "dag_source",

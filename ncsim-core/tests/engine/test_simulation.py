@@ -280,6 +280,10 @@ class Answering(Scheduler):
     [
         (None, "answered with None instead of a PlacementPlan"),
         (PlacementPlan({"T0": "n0"}), "left tasks of DAG 'dag' unplaced: 'T1'"),
+        (
+            PlacementPlan({"T0": "n0", "T1": "n0", "T2": "n0"}),
+            "placed what is no task of DAG 'dag': 'T2'",
+        ),
         (PlacementPlan({"T0": "n0", "T1": "mars"}), "task 'T1' is placed on unknown node 'mars'"),
         (
             PlacementPlan({"T0": "n0", "T1": ["n0"]}),

@@ -18,12 +18,12 @@ __all__ = ["fake_dist"]
 PLANTED = Path(__file__).parent / "planted"
 
 NUMBER_OF_CHECKS = {
-    "scheduler": 14,
-    "routing_model": 17,
-    "link_model": 13,
-    "interference_model": 28,
-    "queue_model": 14,
-    "dag_source": 13,
+    "scheduler": 15,
+    "routing_model": 18,
+    "link_model": 14,
+    "interference_model": 29,
+    "queue_model": 15,
+    "dag_source": 14,
 }
 
 ALL_CHECKS = [(kind, one.name) for kind, suite in SUITES.items() for one in suite.checks()]

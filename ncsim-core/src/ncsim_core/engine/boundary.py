@@ -74,7 +74,7 @@ def checked_placement(models: Models, dag: DAG, snapshot: NetworkSnapshot) -> li
     """Return the node of each task in file order: the scheduler's answer, pins applied.
 
     Raises:
-        PlacementError: The plan lacks a task or names a node that does not exist.
+        PlacementError: The plan lacks a task, or names a task or a node that does not exist.
     """
     who = models.identity("scheduler")
     plan: object = asked(who, lambda: models.scheduler.schedule(dag, snapshot))
@@ -82,14 +82,20 @@ def checked_placement(models: Models, dag: DAG, snapshot: NetworkSnapshot) -> li
         raise PlacementError(f"{who} answered with {plan!r} instead of a PlacementPlan")
     if not plan.nodes.keys() >= dag.task_index.keys():
         lacking = [task.id for task in dag.tasks if task.id not in plan.nodes]
-        shown = ", ".join(map(repr, lacking[:MAX_NAMES_SHOWN]))
-        more = f" and {len(lacking) - MAX_NAMES_SHOWN} more" if lacking[MAX_NAMES_SHOWN:] else ""
-        raise PlacementError(f"{who} left tasks of DAG {dag.id!r} unplaced: {shown}{more}")
+        raise PlacementError(f"{who} left tasks of DAG {dag.id!r} unplaced: {_some(lacking)}")
+    if len(plan.nodes) > len(dag.task_index):
+        strangers = sorted(str(task) for task in plan.nodes if task not in dag.task_index)
+        raise PlacementError(f"{who} placed what is no task of DAG {dag.id!r}: {_some(strangers)}")
     index, nodes = snapshot.network.node_index, plan.nodes
     try:
         return [index[task.pinned_to or nodes[task.id]] for task in dag.tasks]
     except (KeyError, TypeError):
         raise PlacementError(f"{who}: {_misplaced(plan, dag, index)}") from None
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MAX_NAMES_SHOWN} more" if names[MAX_NAMES_SHOWN:] else ""
+    return ", ".join(map(repr, names[:MAX_NAMES_SHOWN])) + more
 
 
 def _misplaced(plan: PlacementPlan, dag: DAG, index: Mapping[NodeId, NodeIndex]) -> str:

@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import cast
 
+from ncsim_core.plugins import KINDS
 from ncsim_core.registry.building import imported
 from ncsim_core.registry.option_schemas import properties_of, schema_fault
 from ncsim_core.testing.builders import line, make_context
@@ -25,6 +26,16 @@ class DeclarationChecks:
         Draft7Validator.check_schema(schema)
         bare = _undescribed(schema)
         assert not bare, f"options without a description: {bare}"
+
+    @check(is_drawn=False, asks=False)
+    def check_capabilities_are_known(self, subject: Subject) -> None:
+        """Every capability is one that components of this kind can have."""
+        known = KINDS[subject.component.kind].capabilities
+        claimed = {each.partition("=")[0] for each in subject.component.capabilities}
+        assert claimed <= known, (
+            f"capabilities that mean nothing: {', '.join(sorted(claimed - known))}; "
+            f"a {subject.component.kind} can have: {', '.join(sorted(known)) or 'none'}"
+        )
 
     @check(is_drawn=False, asks=False)
     def check_defaults_are_the_factorys(self, subject: Subject) -> None:

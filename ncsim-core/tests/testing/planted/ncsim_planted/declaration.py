@@ -10,6 +10,7 @@ LEVEL = {"type": "integer", "default": 2, "description": "Levels."}
 
 OPTIONS_OF_FLAW = {
     "schema_is_portable": {"level": {"type": "integer", "default": 2}},
+    "capabilities_are_known": {"level": LEVEL},
     "defaults_are_the_factorys": {"level": {**LEVEL, "default": 3}},
     "factory_takes_every_option": {"level": LEVEL, "depth": {**LEVEL, "default": 1}},
     "same_question_same_answer": {},
@@ -102,6 +103,7 @@ def _with_flaw(kind: str, flaw: str) -> Component:
         summary="Planted.",
         options={"type": "object", "properties": properties, "additionalProperties": False},
         params={"kind": kind} if properties else {"kind": kind, "flaw": flaw},
+        capabilities=frozenset({"monoton"} if flaw == "capabilities_are_known" else ()),
     )
 
 
