@@ -28,7 +28,6 @@ from ncsim_wifi.spatial.statics import Statics, statics_of
 
 STEPS = 12  # after which rates of transfers move by a few percent at most
 LEAST_BUSY = 1e-3
-GAIN = 0.5
 MAX_KEPT_SCENES = 16  # up to a few MB each
 
 
@@ -197,9 +196,9 @@ class _Coupled:
                 break
             load_MBps = self._load_MBps(answer)
             busy = self._busy(load_MBps, able_MBps)
-            activity = np.exp(GAIN * np.log(busy) + (1.0 - GAIN) * np.log(activity))
+            activity = np.sqrt(busy * activity)  # half way, in logarithms
             fresh = np.maximum(load_MBps / np.maximum(self._scale, LEAST_BUSY), LEAST_BUSY**2)
-            packets = fresh**GAIN * packets ** (1.0 - GAIN)
+            packets = np.sqrt(fresh * packets)
             self._solver.load(activity, packets)
         return answer
 
