@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -122,3 +123,17 @@ def test_arrays_are_used_where_numba_cannot_be_imported(tmp_path):
     )
 
     subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": str(tmp_path)})
+
+
+def test_loops_give_the_same_bits_when_nothing_is_compiled():
+    code = (
+        "import numpy as np\n"
+        "from test_forms import Settings, assert_same_bits, plant_of\n"
+        "at = np.random.default_rng(3).uniform(0.0, 150.0, (6, 2)).tolist()\n"
+        "links = [(each, (30.0, 10.0), 5) for each in at]\n"
+        "for rts_cts in (False, True):\n"
+        "    assert_same_bits(plant_of(links, 1, Settings(rts_cts=rts_cts)))\n"
+    )
+    env = {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(Path(__file__).parent)}
+
+    subprocess.run([sys.executable, "-c", code], check=True, env=env)

@@ -137,7 +137,7 @@ def _spare_acks(acks: Records, met: Overlapped, sent: FloatArray, survives: Floa
     """
     product = np.ones(len(survives))
     for ack in acks:
-        data, rate_per_us = ack.data, sent[ack.two]
+        data, rate_per_us = ack.relation, sent[ack.two]
         if met.prolongs[data]:
             sent_part = min(1.0, _of_survivors(met, ack.back) / max(met.hit[ack.back], LEAST_PART))
             number = rate_per_us * ack.later_us / max(met.hit[data], LEAST_PART) * sent_part

@@ -43,7 +43,7 @@ MEETING = layout(
 OTHER = layout(i8="link station group", f8="harm")
 PAIR = layout(i8="one two")
 HARM = layout(i8="one two", f8="kill")
-ACK = layout(i8="one two data back", f8="kill window_us later_us")
+ACK = layout(i8="one two relation back", f8="kill window_us later_us")
 HELPED = layout(i8="relation own station", f8="protected_us")
 RELATION = np.dtype(
     [
@@ -223,7 +223,7 @@ def _air(scene: Scene, statics: Statics) -> Air:
             ACK,
             one=acks.link,
             two=acks.other,
-            data=acks.data,
+            relation=acks.data,
             back=acks.back,
             kill=acks.kill,
             window_us=acks.window_us,
