@@ -132,13 +132,14 @@ def eliminated(flow: FloatArray) -> FloatArray:
     """
     flow = flow.copy()
     for last in range(len(flow) - 1, 0, -1):
-        leaves = np.add.accumulate(flow[last, :last], axis=0)[-1]
-        flow[:last, last] /= leaves
-        flow[:last, :last] += flow[:last, last, None] * flow[last, None, :last]
+        leaving, entering, rest = flow[last, :last], flow[:last, last], flow[:last, :last]
+        entering /= np.add.accumulate(leaving, axis=0)[-1]
+        rest += entering[:, None] * leaving
     result: FloatArray = flow[0].copy()
     result[0] = 1.0
     for state in range(1, len(flow) - 1):
-        result[state + 1 :] += result[state] * flow[state, state + 1 :]
+        later = result[state + 1 :]
+        later += result[state] * flow[state, state + 1 :]
     return result
 
 
