@@ -138,7 +138,7 @@ def test_check_of_a_good_plugin_passes_and_counts(fake_dist):
         "mine-dist 1.0: 4 run, 0 skipped, 0 expected failures, 0 failed",
         "queue_model mine-dist/mine: 14 run, 1 skipped, 0 expected failures, 0 failed",
         "    skipped: declared_order_is_kept: does not declare order",
-        "in all: 17 run, 1 skipped, 0 expected failures, 0 failed",
+        "in all: 18 run, 1 skipped, 0 expected failures, 0 failed",
     ]
 
 
