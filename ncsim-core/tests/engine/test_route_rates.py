@@ -4,6 +4,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from hypothesis import given, settings
+from ncsim_core.api import result_of
 from ncsim_core.builtin.schedulers import ManualScheduler
 from ncsim_core.contracts.interference_model import RouteRates
 from ncsim_core.engine.observer import Observer
@@ -12,6 +14,7 @@ from ncsim_core.engine.simulation import Simulation
 from ncsim_core.models import ComponentIdentity
 from ncsim_core.testing.builders import inject, line, make_context, rated
 from ncsim_core.testing.toys import ToyRelays, models
+from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.workflow import DAG, Dependency, Task
 
 LINE = rated(line(4, bandwidth_MBps=2.0))
@@ -39,10 +42,13 @@ class Rates(Observer):
         self.moved.append([(each.transfer, each.rate_MBps) for each in changes])
 
 
-def transfers(*ends, size_MB=4.0):
-    """Return a DAG of lone transfers between pairs of nodes of the line."""
+def transfers(*ends, size_MB=4.0, each_later=0.0):
+    """Return a DAG of lone transfers between pairs of nodes of the line.
+
+    Each of their tasks costs ``each_later`` more than the one before.
+    """
     tasks = [
-        Task(f"{side}{k}", 0.0, f"n{node}")
+        Task(f"{side}{k}", k * each_later, f"n{node}")
         for k, pair in enumerate(ends)
         for side, node in zip("ab", pair, strict=True)
     ]
@@ -63,7 +69,7 @@ def run(interference, dag, *observers):
 def test_all_routes_are_asked_about_at_every_start_and_finish_in_ascending_order():
     model = Listening(LINE)
 
-    run(model, transfers((2, 3), (0, 3), (0, 1), (0, 1)))
+    run(model, transfers((2, 3), (0, 3), (0, 1), (0, 1), each_later=1.0))
     assert [len(routes) for routes in model.asked] == [1, 2, 3, 4, 3, 2, 1]
     assert all(one <= other for routes in model.asked for one, other in pairwise(routes))
 
@@ -71,7 +77,8 @@ def test_all_routes_are_asked_about_at_every_start_and_finish_in_ascending_order
 def test_only_transfers_whose_rate_moves_are_touched():
     rates = Rates()
 
-    outcome = run(ToyRelays(LINE), transfers((0, 1), (2, 3), (0, 1)), rates)
+    dag = transfers((0, 1), (2, 3), (0, 1), each_later=1.0)
+    outcome = run(ToyRelays(LINE), dag, rates)
     assert outcome.status is RunStatus.COMPLETED
     assert rates.moved == [
         [(0, 2.0)],
@@ -79,6 +86,36 @@ def test_only_transfers_whose_rate_moves_are_touched():
         [(0, 1.0), (2, 1.0)],
         [(2, 2.0)],
     ]
+
+
+def test_starts_of_one_instant_are_asked_about_together():
+    model, rates = Listening(LINE), Rates()
+
+    run(model, transfers((0, 1), (2, 3), (0, 1)), rates)
+    assert [len(routes) for routes in model.asked] == [3, 2, 1]
+    assert rates.moved == [[(0, 1.0), (1, 2.0), (2, 1.0)], [(2, 2.0)]]
+
+
+def test_a_start_is_not_left_to_one_without_bytes_that_follows():
+    dag = transfers((0, 1), (2, 3))
+    empty = replace(dag.dependencies[1], data_size_MB=0.0)
+    model = Listening(LINE)
+
+    outcome = run(model, replace(dag, dependencies=(dag.dependencies[0], empty)))
+    assert outcome.makespan_us == 2_000_000
+    assert [len(routes) for routes in model.asked] == [1]
+
+
+@settings(max_examples=60, deadline=None)
+@given(run_cases(decides_routes=True))
+def test_asking_once_for_several_starts_changes_no_result(case):
+    once, each_time = case.simulation(), case.simulation()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ncsim_core.engine.refresh.is_followed_by_a_start", lambda *_: False)
+        each_time.run()
+
+    assert once.run() == each_time.outcome
+    assert result_of(once) == result_of(each_time)
 
 
 def test_a_relay_that_halves_its_route_takes_twice_the_time():

@@ -77,6 +77,15 @@ class EventQueue:
                 return due
         return None
 
+    def next_start(self, now_us: Instant) -> int | None:
+        """Return the transfer that starts next, at this instant; ``None`` if none does."""
+        soon, later = self.soon, self.later
+        head = soon[0] if soon else None
+        if later and (head is None or later[0] < head):
+            head = later[0]
+        is_one = head is not None and head[0] == now_us and head[1] == TRANSFER_START
+        return head[3] if is_one and head is not None else None
+
     def is_time(self, due: Due) -> bool:
         """Return whether a transfer completes now; if it does later, put its entry there."""
         at_us = due[0]

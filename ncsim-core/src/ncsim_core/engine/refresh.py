@@ -12,7 +12,7 @@ from typing import TypeAlias
 from ncsim_core.engine.link_shares import moves_by_link
 from ncsim_core.engine.moves import Move, Touched
 from ncsim_core.engine.observer import RateCause, RateColumns, changes_of
-from ncsim_core.engine.route_rates import moves_by_route
+from ncsim_core.engine.route_rates import is_followed_by_a_start, moves_by_route, use_links
 from ncsim_core.engine.setup import Setup
 from ncsim_core.engine.state import State, Transfer
 from ncsim_core.units import MICROSECONDS_PER_SECOND, NEVER_us, service_time_us
@@ -24,7 +24,10 @@ def refresh(transfer: Transfer, change: Change, state: State, setup: Setup) -> N
     """Apply one start or finish, then bring every affected transfer up to date."""
     touched = change(state, transfer)  # 1. occupy or release the route
     if setup.decides_routes:  # 2. whose rate moves, and to what? (Eqs. 1 and 12)
-        moves = moves_by_route(touched, state, setup)
+        use_links(touched, state)
+        if change is occupy and is_followed_by_a_start(state, setup):
+            return  # which asks for both
+        moves = moves_by_route(state, setup)
     else:
         moves = moves_by_link(transfer, touched, state, setup)
     bring_up_to_date(moves, state)  # 3. to 5.

@@ -10,14 +10,27 @@ from ncsim_core.engine.state import State, Transfer
 from ncsim_core.network import Route
 
 
-def moves_by_route(touched: Touched, state: State, setup: Setup) -> list[Move]:
+def use_links(touched: Touched, state: State) -> None:
+    """Note which links are in use, for those who ask what links are up against."""
+    if state.interference is not None:
+        on, off, _ = touched
+        state.interference.update(on, off)
+
+
+def is_followed_by_a_start(state: State, setup: Setup) -> bool:
+    """Return whether the next thing to happen is that another transfer starts, at this instant.
+
+    The rates in between would hold for no time. With global reach they are asked for all the same.
+    """
+    number = state.queue.next_start(state.now_us)
+    return number is not None and setup.dependencies[number].size_MB > 0 and not setup.is_global
+
+
+def moves_by_route(state: State, setup: Setup) -> list[Move]:
     """Return the transfers whose rate or bottleneck moves, by number.
 
     With global reach, all that are under way.
     """
-    if state.interference is not None:
-        on, off, _ = touched
-        state.interference.update(on, off)
     if not state.flows:
         return []
     flows = sorted(state.flows.values(), key=_canonical)

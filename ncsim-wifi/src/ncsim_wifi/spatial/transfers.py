@@ -26,7 +26,7 @@ from ncsim_wifi.spatial.scene import Scene, scene_of
 from ncsim_wifi.spatial.sharing import Sharing
 from ncsim_wifi.spatial.statics import Statics, statics_of
 
-STEPS = 12  # after which rates of transfers move by a few percent at most
+STEPS = 10  # after which rates are off their limits by 4 % in the median, one in ten by 14 %
 LEAST_BUSY = 1e-3
 MAX_KEPT_SCENES = 16  # up to a few MB each
 
@@ -196,9 +196,9 @@ class _Coupled:
                 break
             load_MBps = self._load_MBps(answer)
             busy = self._busy(load_MBps, able_MBps)
-            activity = np.sqrt(busy * activity)  # half way, in logarithms
+            activity = moved(activity, busy)
             fresh = np.maximum(load_MBps / np.maximum(self._scale, LEAST_BUSY), LEAST_BUSY**2)
-            packets = np.sqrt(fresh * packets)
+            packets = moved(packets, fresh)
             self._solver.load(activity, packets)
         return answer
 
@@ -215,3 +215,11 @@ class _Coupled:
         part = np.where(able_MBps > 0.0, load_MBps / np.maximum(able_MBps, 1e-300), 1.0)
         stations = np.bincount(self._scene.station, part, minlength=self._scene.station_count)
         return np.minimum(np.maximum(stations, LEAST_BUSY), 1.0)
+
+
+def moved(old: FloatArray, fresh: FloatArray) -> FloatArray:
+    """Return what is 11/16 of the way from old to fresh, in logarithms.
+
+    The plain iteration oscillates. Roots give the same bits on every machine, powers do not.
+    """
+    return np.sqrt(fresh * np.sqrt(old * np.sqrt(fresh * np.sqrt(fresh * old))))
