@@ -252,7 +252,10 @@ def _increments(
     both_mW = with_it_mW[..., :1] + near.power_mW[:, None, :]
     every_mW = np.concatenate([set_mW, with_it_mW, both_mW], axis=2)
     hazards = hazard(scene.scheme[links], scene.ratio_dB(every_mW, links))
-    before, after, both = np.split(hazards, [len(sets), 2 * len(sets)], axis=2)
+    count = len(sets)
+    before, after, both = (
+        hazards[..., :count], hazards[..., count : 2 * count], hazards[..., 2 * count :]
+    )  # fmt: skip
     delta = np.minimum(after, MAX_JOINT_HAZARD) - np.minimum(before, MAX_JOINT_HAZARD)
     delta[..., 0] = after[..., 0] - before[..., 0]
     is_impossible = impossible_subsets(near.station[links, helper], ~there, scene.senses)

@@ -7,27 +7,15 @@ from ncsim_core.compiling import inlined
 
 from ncsim_wifi.quantities import FloatArray, IntArray
 from ncsim_wifi.spatial.attempts import Exchange
-from ncsim_wifi.spatial.backoff import STAGES
-from ncsim_wifi.spatial.compiled.tables import Records
+from ncsim_wifi.spatial.compiled.tables import Records, layout
 
-LINK_STATE = np.dtype(
-    [
-        ("attempts", "f8"),  # a_l, share in the attempts of its station
-        ("loss", "f8"),  # share of lost frames
-        ("answered", "f8"),  # part of its RTS that are answered
-        ("packets", "f8"),  # per time, up to a factor per station
-        ("stages", "f8", (STAGES,)),  # q_l(k), share of attempts in each stage
-    ]
-)
-STATION_STATE = np.dtype(
-    [
-        ("activity", "f8"),  # alpha, part of the time in which it has a frame
-        ("silenced", "f8"),  # how often it is silenced by CTS of hidden receivers
-        ("blocked", "f8"),  # B, how often by summed power
-        ("silent_us", "f8"),  # b_u
-        ("stages", "f8", (STAGES,)),  # q_u(k)
-    ]
-)
+LINK_STATE = layout(f8="attempts loss answered packets", by_stage="stages")
+"""a_l, share in the attempts of its station; share of lost frames; part of its RTS that are
+answered; packets per time; q_l(k), share of attempts in each stage."""
+
+STATION_STATE = layout(f8="activity silenced blocked silent_us", by_stage="stages")
+"""alpha, part of the time in which it has a frame; how often it is silenced by CTS of hidden
+receivers; B, how often by summed power; b_u; q_u(k)."""
 
 
 class State(NamedTuple):

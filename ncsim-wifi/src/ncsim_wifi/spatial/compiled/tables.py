@@ -24,9 +24,18 @@ Records = NDArray[Any]
 Layout = np.dtype[np.void]
 
 
-def layout(**fields: str) -> Layout:
-    """Return the layout of records, from the names of their fields by type."""
-    return np.dtype([(name, kind) for kind, names in fields.items() for name in names.split()])
+def layout(*, by_stage: str = "", **fields: str) -> Layout:
+    """Return the layout of records, from the names of their fields by type.
+
+    Args:
+        by_stage: Fields that hold a number for each back-off stage.
+        fields: Numbers.
+    """
+    columns: list[tuple[object, ...]] = [
+        (name, kind) for kind, names in fields.items() for name in names.split()
+    ]
+    columns += [(name, "f8", (STAGES,)) for name in by_stage.split()]
+    return np.dtype((np.record, columns))
 
 
 LINK = layout(
@@ -45,16 +54,11 @@ PAIR = layout(i8="one two")
 HARM = layout(i8="one two", f8="kill")
 ACK = layout(i8="one two relation back", f8="kill window_us later_us")
 HELPED = layout(i8="relation own station", f8="protected_us")
-RELATION = np.dtype(
-    [
-        *layout(
-            i8="link station own group",
-            bool="is_strong has_company stops_at_cts locks by_cts by_cts_only",
-            f8="alone_half_kill alone_kill window_us noticed_us protection_ends",
-        ).descr,
-        ("by_cts_survives", "f8", (STAGES,)),
-        ("by_cts_missed", "f8", (STAGES,)),
-    ]
+RELATION = layout(
+    i8="link station own group",
+    bool="is_strong has_company stops_at_cts locks by_cts by_cts_only",
+    f8="alone_half_kill alone_kill window_us noticed_us protection_ends",
+    by_stage="by_cts_survives by_cts_missed",
 )
 """See ``Hostile`` and ``Statics``."""
 
@@ -172,7 +176,7 @@ def tables_of(scene: Scene, statics: Statics, joint: JointStages) -> Tables:
 
 def records(shape: int | tuple[int, ...], kind: Layout, **values: NDArray[np.generic]) -> Records:
     """Return records with some values, 0 elsewhere."""
-    made = np.zeros(shape, np.dtype((np.record, kind)))
+    made = np.zeros(shape, kind)
     for name, value in values.items():
         made[name] = value
     return made
