@@ -2,6 +2,7 @@
 
 import importlib
 from collections.abc import Callable
+from functools import cache
 from typing import TypeAlias
 
 from ncsim_core.context import BuildContext
@@ -24,8 +25,9 @@ def load_object(location: str) -> object:
     return found
 
 
+@cache
 def contract_of(kind: str) -> type:
-    """Return the abstract base class of a kind."""
+    """Return the abstract base class of a kind; asked for every queue of a network."""
     contract = load_object(KINDS[kind].contract)
     assert isinstance(contract, type)
     return contract
