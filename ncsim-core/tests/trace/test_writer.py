@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from ncsim_core.engine.events import TRANSFER_COMPLETE
-from ncsim_core.engine.observer import Batch
+from ncsim_core.engine.observer import Batch, Observer
 from ncsim_core.testing.whole_runs import run_cases
 from ncsim_core.testing.worked_example import worked_example
 from ncsim_core.trace.encoding import line_of, lines_of
@@ -202,6 +202,25 @@ def test_notes_of_plugins_are_kept_under_their_name(tmp_path):
 
     note = records_of(tmp_path / "t.jsonl")[0]
     assert note == {"t": 0, "k": "note", "ns": "my-plugin", "data": {"temperature": 21}}
+
+
+def test_notes_taken_while_a_run_goes_on_stand_where_they_belong(tmp_path):
+    writer = TraceWriter(tmp_path / "t.jsonl")
+
+    class Annotator(Observer):
+        def task_ended(self, at_us, task, node):
+            writer.note(at_us, "my-plugin", {"},\ud800": task})
+
+    worked_example(writer, Annotator()).run()
+
+    records = records_of(tmp_path / "t.jsonl")
+    times_us = [record["t"] for record in records]
+    assert times_us == sorted(times_us)
+    notes = [(at, record["t"]) for at, record in enumerate(records) if record["k"] == "note"]
+    ends = [(at, record["t"]) for at, record in enumerate(records) if record["k"] == "end"]
+    assert [at_us for _, at_us in notes] == [at_us for _, at_us in ends]
+    assert all(note > end for (note, _), (end, _) in zip(notes, ends, strict=True))
+    assert records[-1]["counts"]["note"] == len(notes) == 4
 
 
 def test_a_folder_that_does_not_exist_is_named(tmp_path):

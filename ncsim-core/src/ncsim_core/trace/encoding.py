@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from numbers import Integral
 from typing import Final
 
-from msgspec import Struct
+from msgspec import Raw, Struct
 from msgspec.json import Encoder
 
 to_json: Final[Callable[[object], str]] = json.JSONEncoder(
@@ -60,6 +60,15 @@ class EndRecord(Struct, gc=False):
     x: int
 
 
+class NoteRecord(Struct, gc=False):
+    """``note``; what plug-ins say is encoded already."""
+
+    t: int
+    k: str
+    ns: Raw
+    data: Raw
+
+
 def lines_of(records: Sequence[Struct]) -> bytes:
     """Return a line for each record."""
     return _ENCODER.encode_lines(records)
@@ -70,17 +79,17 @@ def line_of(document: Mapping[str, object]) -> bytes:
     try:
         return _ENCODER.encode(document) + b"\n"
     except UnicodeEncodeError:  # half of a surrogate pair
-        return json_line(document)
+        return json_bytes(document) + b"\n"
 
 
-def json_line(document: Mapping[str, object]) -> bytes:
-    """Return a document as a line.
+def json_bytes(document: object) -> bytes:
+    """Return anything that JSON can say.
 
     Raises:
         ValueError: It holds an infinity or what is no number.
         TypeError: It holds what JSON does not know.
     """
-    return (to_json(document) + "\n").encode("utf-8", "backslashreplace")
+    return to_json(document).encode("utf-8", "backslashreplace")
 
 
 def _plain_number(number: object) -> float:

@@ -2,15 +2,15 @@
 
 import json
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Self, TextIO
 
-from msgspec import Struct
+from msgspec import Raw, Struct
 from typing_extensions import override
 
 from ncsim_core.contracts.interference_model import Against
@@ -29,10 +29,11 @@ from ncsim_core.models import ComponentIdentity
 from ncsim_core.network import NodeIndex
 from ncsim_core.trace.encoding import (
     EndRecord,
+    NoteRecord,
     RateRecord,
     StartRecord,
     TaskRecord,
-    json_line,
+    json_bytes,
     line_of,
     lines_of,
 )
@@ -84,6 +85,7 @@ class TraceWriter(BatchObserver):
         self._sink = LineSink(target, is_live=is_live)
         self._counts: Counter[str] = Counter()
         self._nodes: list[NodeIndex] = []  # by task, as far as DAGs have entered
+        self._notes: list[NoteRecord] = []  # that wait for the events before them
         self._setup: Setup | None = None
 
     def __enter__(self) -> Self:
@@ -109,8 +111,8 @@ class TraceWriter(BatchObserver):
         injected = injected_record(self._setup, at_us, dag)
         keys = (field.key for field in RECORDS["inject"].fields)
         fields = dict(zip(keys, injected[2:], strict=True))
-        self._write(line_of, "inject", at_us, fields)
-        self._write(line_of, "place", at_us, {"d": dag, "n": self._nodes[injected.first_task :]})
+        self._write("inject", at_us, fields)
+        self._write("place", at_us, {"d": dag, "n": self._nodes[injected.first_task :]})
 
     @override
     def events_happened(self, batch: Batch) -> None:
@@ -136,11 +138,16 @@ class TraceWriter(BatchObserver):
         for kind, count in Counter(map(KIND_OF, batch.events)).items():
             self._counts[KINDS[kind]] += count
         self._counts["recalc"] += len(rates)
+        if self._notes:
+            records = sorted([*records, *self._notes], key=attrgetter("t"))
+            self._notes.clear()
         self._sink.write(lines_of(records))
 
     def note(self, at_us: Instant, namespace: str, data: object) -> None:
-        """Put something of a plug-in on record, under the plug-in's name."""
-        self._write(json_line, "note", at_us, {"ns": namespace, "data": data})
+        """Put something of a plug-in on record, under the plug-in's name, after all before it."""
+        self._counts["note"] += 1
+        said = Raw(json_bytes(namespace)), Raw(json_bytes(data))
+        self._notes.append(NoteRecord(at_us, "note", *said))
 
     @override
     def run_ended(self, outcome: Outcome) -> None:
@@ -151,18 +158,13 @@ class TraceWriter(BatchObserver):
             "detail": outcome.detail,
             "counts": {kind: self._counts[kind] for kind in RECORDS if self._counts[kind]},
         }
-        self._write(line_of, "done", outcome.ended_us, fields)
+        self._write("done", outcome.ended_us, fields)
         self._sink.finish()
 
-    def _write(
-        self,
-        encode: Callable[[Mapping[str, object]], bytes],
-        kind: str,
-        at_us: Instant,
-        fields: Mapping[str, object],
-    ) -> None:
+    def _write(self, kind: str, at_us: Instant, fields: Mapping[str, object]) -> None:
         self._counts[kind] += 1
-        self._sink.write(encode({"t": at_us, "k": kind, **fields}))
+        self._sink.write(lines_of(self._notes) + line_of({"t": at_us, "k": kind, **fields}))
+        self._notes.clear()
 
 
 def rate_record(at_us: Instant, cause: tuple[str, int], columns: RateColumns) -> RateRecord:
