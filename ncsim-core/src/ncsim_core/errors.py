@@ -4,6 +4,7 @@ How a run ends is not an error: see ``ncsim_core.engine.outcome.RunStatus``.
 """
 
 import traceback
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -45,6 +46,16 @@ class ConvergenceError(NcsimError):
 
 class EngineError(NcsimError):
     """ncsim broke one of its own invariants: a bug, please report it."""
+
+
+def some_of(texts: Sequence[str], most: int) -> str:
+    """Return the first few texts in a row, and how many more there are.
+
+    >>> some_of(["a", "b", "c"], 2)
+    'a, b and 1 more'
+    """
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return ", ".join(texts[:most]) + more
 
 
 def told(error: BaseException) -> str:

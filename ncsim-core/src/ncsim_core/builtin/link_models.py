@@ -4,7 +4,7 @@ from typing_extensions import override
 
 from ncsim_core.context import BuildContext
 from ncsim_core.contracts.link_model import LinkModel
-from ncsim_core.errors import ScenarioError
+from ncsim_core.errors import ScenarioError, some_of
 from ncsim_core.network import LinkRates, Network
 
 MAX_NAMED = 8
@@ -21,8 +21,7 @@ class StaticLinkModel(LinkModel):
     def rate_links(self, network: Network) -> LinkRates:
         bare = [link.id for link in network.links if link.bandwidth_MBps is None]
         if bare:
-            names = ", ".join(map(repr, bare[:MAX_NAMED]))
-            names += f" and {len(bare) - MAX_NAMED} more" if len(bare) > MAX_NAMED else ""
+            names = some_of([*map(repr, bare)], MAX_NAMED)
             raise ScenarioError(
                 f"link model static: links without bandwidth: {names}; give each a bandwidth in "
                 "MB/s, or choose a link model that derives it, such as wifi"

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from ncsim_core.errors import PluginError
+from ncsim_core.errors import PluginError, some_of
 
 if TYPE_CHECKING:
     from ncsim_core.registry import PluginRecord, Registry
@@ -88,8 +88,8 @@ def result_lines(label: str, results: Sequence["CheckResult"]) -> Iterator[str]:
             alike.setdefault((each.status, each.detail), []).append(each.check)
     for (status, detail), checks in alike.items():
         indented = detail.replace("\n", "\n      ")
-        more = f" and {len(checks) - MOST_NAMED} more" if len(checks) > MOST_NAMED else ""
-        yield f"    {status.replace('_', ' ')}: {', '.join(checks[:MOST_NAMED])}{more}: {indented}"
+        names = some_of(checks, MOST_NAMED)
+        yield f"    {status.replace('_', ' ')}: {names}: {indented}"
 
 
 def counts(results: Sequence["CheckResult"]) -> str:

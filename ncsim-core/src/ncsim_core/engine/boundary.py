@@ -19,7 +19,7 @@ from ncsim_core.contracts.interference_model import (
 )
 from ncsim_core.contracts.queue_model import QueueModel, WaitingTask
 from ncsim_core.contracts.scheduler import NetworkSnapshot
-from ncsim_core.errors import NcsimError, PlacementError, PluginError, told
+from ncsim_core.errors import NcsimError, PlacementError, PluginError, some_of, told
 from ncsim_core.models import ComponentIdentity, Models
 from ncsim_core.network import LinkIndex, Network, NodeId, NodeIndex, Route
 from ncsim_core.workflow import DAG, Injection, PlacementPlan
@@ -81,21 +81,18 @@ def checked_placement(models: Models, dag: DAG, snapshot: NetworkSnapshot) -> li
     if not isinstance(plan, PlacementPlan) or not isinstance(plan.nodes, Mapping):
         raise PlacementError(f"{who} answered with {plan!r} instead of a PlacementPlan")
     if not plan.nodes.keys() >= dag.task_index.keys():
-        lacking = [task.id for task in dag.tasks if task.id not in plan.nodes]
-        raise PlacementError(f"{who} left tasks of DAG {dag.id!r} unplaced: {_some(lacking)}")
+        lacking = [repr(task.id) for task in dag.tasks if task.id not in plan.nodes]
+        shown = some_of(lacking, MAX_NAMES_SHOWN)
+        raise PlacementError(f"{who} left tasks of DAG {dag.id!r} unplaced: {shown}")
     if len(plan.nodes) > len(dag.task_index):
         strangers = sorted(str(task) for task in plan.nodes if task not in dag.task_index)
-        raise PlacementError(f"{who} placed what is no task of DAG {dag.id!r}: {_some(strangers)}")
+        shown = some_of([*map(repr, strangers)], MAX_NAMES_SHOWN)
+        raise PlacementError(f"{who} placed what is no task of DAG {dag.id!r}: {shown}")
     index, nodes = snapshot.network.node_index, plan.nodes
     try:
         return [index[task.pinned_to or nodes[task.id]] for task in dag.tasks]
     except (KeyError, TypeError):
         raise PlacementError(f"{who}: {_misplaced(plan, dag, index)}") from None
-
-
-def _some(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MAX_NAMES_SHOWN} more" if names[MAX_NAMES_SHOWN:] else ""
-    return ", ".join(map(repr, names[:MAX_NAMES_SHOWN])) + more
 
 
 def _misplaced(plan: PlacementPlan, dag: DAG, index: Mapping[NodeId, NodeIndex]) -> str:
@@ -140,8 +137,8 @@ class CheckedSession(InterferenceSession):
     def competition(self, links: Sequence[LinkIndex]) -> Sequence[Competition]:
         answers = asked(self._who, lambda: list(self._session.competition(links)))
         if len(answers) != len(links):
-            told = f"{len(answers)} answers for {len(links)} links"
-            raise PluginError(f"{self._who}: competition() gave {told}")
+            count = f"{len(answers)} answers for {len(links)} links"
+            raise PluginError(f"{self._who}: competition() gave {count}")
         for answer in answers:
             if not _is_competition(answer):
                 raise PluginError(f"{self._who}: competition() gave {answer!r}")

@@ -21,7 +21,7 @@ from ncsim_core.engine.tasks import (
     task_becomes_ready,
 )
 from ncsim_core.engine.transfers import complete_transfer, start_transfer
-from ncsim_core.errors import EngineError, NcsimError
+from ncsim_core.errors import EngineError, NcsimError, some_of
 from ncsim_core.models import Models
 from ncsim_core.network import Network
 from ncsim_core.units import HORIZON_us, s_from_us
@@ -332,8 +332,7 @@ def _unroutable_detail(state: State, setup: Setup) -> str:
     ]
     if not dead:
         return text
-    more = f" and {len(dead) - MAX_LINKS_IN_DETAIL} more" if dead[MAX_LINKS_IN_DETAIL:] else ""
-    return f"{text}. Links without bandwidth: {', '.join(dead[:MAX_LINKS_IN_DETAIL])}{more}"
+    return f"{text}. Links without bandwidth: {some_of(dead, MAX_LINKS_IN_DETAIL)}"
 
 
 def _listed(what: str, lines: list[str]) -> str:

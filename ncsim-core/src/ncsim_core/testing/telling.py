@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from ncsim_core.errors import some_of
 from ncsim_core.network import Link, Node
 from ncsim_core.testing.questions import Case
 from ncsim_core.workflow import DAG, Task
@@ -70,5 +71,4 @@ def _task(task: Task) -> str:
 
 
 def _listed(rows: Sequence[str]) -> str:
-    more = f" and {len(rows) - MOST_ROWS} more" if len(rows) > MOST_ROWS else ""
-    return (", ".join(rows[:MOST_ROWS]) or "none") + more
+    return some_of(rows, MOST_ROWS) or "none"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from ncsim_core.contracts.interference_model import Competition, InterferenceModel
-from ncsim_core.errors import ModelScopeError
+from ncsim_core.errors import ModelScopeError, some_of
 from ncsim_core.network import Link, LinkIndex
 from typing_extensions import override
 
@@ -186,6 +186,4 @@ class FixedCaptureModel(InterferenceModel):
             )
 
     def _named(self, links: Sequence[LinkIndex]) -> str:
-        shown = ", ".join(repr(str(self._names[link])) for link in links[:MAX_LINKS_NAMED])
-        more = len(links) - MAX_LINKS_NAMED
-        return (shown or "none") + (f" and {more} more" if more > 0 else "")
+        return some_of([repr(str(self._names[link])) for link in links], MAX_LINKS_NAMED) or "none"
