@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import count, islice, zip_longest
+from itertools import islice, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import BinaryIO, cast
@@ -125,7 +125,7 @@ def _compared(there: Path, here: Path) -> tuple[int, list[str]]:
     with opened(there) as old, opened(here) as new:
         faults = _header_faults(old, new)
         pairs = zip_longest(old, new)
-        for number, (mine, theirs) in zip(count(), pairs, strict=False):
+        for number, (mine, theirs) in enumerate(pairs):
             if mine != theirs:
                 parting = _parting(number, there, here, mine or b"", theirs or b"")
                 return number, [*faults, *parting]
